@@ -1,0 +1,418 @@
+//! The behaviour of an agent: state, ports, and units (services, machines, plans) made of statements
+//! and nodes.
+
+use crate::{Expr, Name, Span, Type};
+use serde::{Deserialize, Serialize};
+
+/// An agent type: a container of state and services on one robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Agent {
+    /// Name.
+    pub name: Name,
+    /// Whether it serves several sub-goals at a time; otherwise it is exclusive.
+    pub collaborative: bool,
+    /// Parameters, given by the robot that runs it ([`crate::Op::Argument`]).
+    pub parameters: Vec<(Name, Type)>,
+    /// What it offers to others.
+    pub offers: Vec<Offer>,
+    /// Sensors it needs, by the platform's sensor name.
+    pub sensors: Vec<Port>,
+    /// Actuators it commands, by the platform's actuator name.
+    pub actuators: Vec<Port>,
+    /// State slots ([`crate::Op::State`]).
+    pub states: Vec<State>,
+    /// Events its units raise and wait for.
+    pub events: Vec<Name>,
+    /// Services, machines and plans, in declaration order.
+    pub units: Vec<Unit>,
+    /// One for each actuator that several units command.
+    pub arbiters: Vec<Arbiter>,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// A service an agent offers in the directory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Offer {
+    /// Name.
+    pub name: Name,
+    /// Inputs.
+    pub parameters: Vec<(Name, Type)>,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// A sensor or actuator an agent uses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Port {
+    /// Name of the platform's sensor or actuator.
+    pub name: Name,
+    /// Type of a reading or command, without the optional.
+    pub ty: Type,
+    /// Sensors only: the agent handles absence itself (`T?`). Otherwise a unit that reads this sensor
+    /// is skipped while the reading is absent or expired.
+    #[serde(default)]
+    pub optional: bool,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// A state slot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Name; `machine.state.field` for the data of a machine state.
+    pub name: Name,
+    /// Type.
+    pub ty: Type,
+    /// Initial value: constants, parameters and agent arguments only.
+    pub initial: Expr,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// Something with a trigger.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unit {
+    /// Name.
+    pub name: Name,
+    /// What sets it off.
+    pub trigger: Trigger,
+    /// Declared timing.
+    #[serde(default)]
+    pub timing: Timing,
+    /// Types of its locals.
+    pub locals: Vec<Type>,
+    /// Agent-level `let`s it uses, evaluated first at every activation.
+    pub prelude: Vec<Stmt>,
+    /// What it does.
+    pub kind: UnitKind,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// The three ways to write behaviour.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UnitKind {
+    /// Statements, run once an activation.
+    Service(Vec<Stmt>),
+    /// A state machine; the first state is the initial one.
+    Machine(Vec<MachineState>),
+    /// A plan tree; node 0 is the root. With a sub-goal, its success achieves it.
+    Plan {
+        /// Nodes, parents before children.
+        nodes: Vec<PlanNode>,
+        /// Name of the sub-goal this is a plan for.
+        subgoal: Option<Name>,
+    },
+}
+
+/// When a unit is released.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Trigger {
+    /// Every period, first at `offset`: durations, constant at the start of a run.
+    Every {
+        /// Period.
+        period: Expr,
+        /// First release.
+        offset: Option<Expr>,
+    },
+    /// At every tick of the step clock, `offset` after it.
+    Step {
+        /// Delay after the tick.
+        offset: Option<Expr>,
+    },
+    /// When a message on a topic is delivered; it is bound to a local.
+    Message {
+        /// Topic.
+        topic: u32,
+        /// Local for the message.
+        local: u32,
+    },
+    /// When a message told to this agent is delivered; it is bound to a local.
+    Told {
+        /// Performative, lower case (`inform`).
+        performative: Name,
+        /// Record type of the content.
+        content: Name,
+        /// Sending agent, any when absent.
+        from: Option<Name>,
+        /// Local for the content.
+        local: u32,
+    },
+    /// When a reading of a sensor port is delivered.
+    Reading(u32),
+    /// When an event of the agent is raised.
+    Event(u32),
+}
+
+/// Declared timing; durations constant at the start of a run. Analysed by the checker, charged by the
+/// simulator.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Timing {
+    /// Relative deadline.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deadline: Option<Expr>,
+    /// Worst-case execution time: outputs appear that long after the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub worst_case: Option<Expr>,
+    /// Least time between two releases of a unit that is not periodic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_most_every: Option<Expr>,
+    /// Fixed priority; higher runs first among releases of one instant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub priority: Option<i64>,
+    /// Core it is bound to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub core: Option<i64>,
+    /// Budget of an anytime service.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<Expr>,
+}
+
+/// A statement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stmt {
+    /// What it does.
+    #[serde(flatten)]
+    pub kind: StmtKind,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// Kinds of statements.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StmtKind {
+    /// Binds a local.
+    Let(u32, Expr),
+    /// Sets a state slot.
+    Set(u32, Expr),
+    /// Proposes a command for an actuator port.
+    Command(u32, Expr),
+    /// Publishes a record on a topic.
+    Publish(u32, Expr),
+    /// Tells another agent on the same robot.
+    Tell {
+        /// Performative, lower case.
+        performative: Name,
+        /// Receiving agent.
+        to: Name,
+        /// A record.
+        content: Expr,
+    },
+    /// Writes a remark into the trace.
+    Note(String, Option<Expr>),
+    /// Raises an event of the agent.
+    Raise(u32),
+    /// Sets a mission parameter.
+    SetParam(u32, Expr),
+    /// Condition, then, else.
+    If(Expr, Vec<Stmt>, Vec<Stmt>),
+    /// Two ways on an optional.
+    IfSome {
+        /// The optional.
+        value: Expr,
+        /// Local for the value.
+        local: u32,
+        /// Local for the reason.
+        reason: Option<u32>,
+        /// With the value.
+        then: Vec<Stmt>,
+        /// Without.
+        otherwise: Vec<Stmt>,
+    },
+    /// One way for each variant of an enum.
+    Switch {
+        /// The enum value.
+        value: Expr,
+        /// Variants and what to do.
+        arms: Vec<(Vec<u32>, Vec<Stmt>)>,
+        /// What to do for all others.
+        rest: Option<Vec<Stmt>>,
+    },
+    /// The first rule whose guard holds acts; the trace says which.
+    Rules(Vec<Rule>),
+}
+
+/// A guarded rule. An empty guard always holds (`otherwise`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rule {
+    /// All must hold, in order; a bound local can be used further right and in the body.
+    pub guard: Vec<Conjunct>,
+    /// What it does.
+    pub body: Vec<Stmt>,
+    /// The guard's place.
+    pub at: Span,
+}
+
+/// A part of a guard.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Conjunct {
+    /// A condition.
+    Holds(Expr),
+    /// `optional is some(local)`.
+    Binds(u32, Expr),
+}
+
+/// A state of a machine. At each activation the transitions are tried first, in order; at most one is
+/// taken; then the body of the state the machine is in runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MachineState {
+    /// Name.
+    pub name: Name,
+    /// Data carried by the state: slots of the agent, assigned on entry.
+    pub data: Vec<u32>,
+    /// On entry, after the data are assigned.
+    pub entry: Vec<Stmt>,
+    /// Every activation.
+    pub body: Vec<Stmt>,
+    /// On leaving.
+    pub exit: Vec<Stmt>,
+    /// Ways out.
+    pub transitions: Vec<Transition>,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// A way from one state to another.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Transition {
+    /// When it is taken.
+    pub guard: Vec<Conjunct>,
+    /// Index of the target state.
+    pub target: u32,
+    /// One value for each datum of the target.
+    pub arguments: Vec<Expr>,
+    /// What it does, after the exit actions and before the entry actions.
+    pub body: Vec<Stmt>,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// A node of a plan tree.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlanNode {
+    /// Kind.
+    pub kind: PlanKind,
+    /// Children, by index.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub children: Vec<u32>,
+    /// Name shown in pictures and traces.
+    pub label: String,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// Kinds of plan nodes; `runtime/src/nodes/` has one file each with its result and halt semantics.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PlanKind {
+    /// Children in order until one fails. With memory it resumes at the running child; reactive starts
+    /// again at the first at every tick.
+    Sequence {
+        /// Resumes at the running child.
+        memory: bool,
+    },
+    /// Children in order until one succeeds.
+    Fallback {
+        /// Resumes at the running child.
+        memory: bool,
+    },
+    /// All children at every tick; succeeds when `successes` of them have (all when absent), fails when
+    /// that cannot be reached any more.
+    Parallel {
+        /// How many must succeed.
+        successes: Option<u32>,
+    },
+    /// Ticks its child again when it failed, so many times.
+    Retry(u32),
+    /// Fails when its child runs longer.
+    Timeout(Expr),
+    /// Ticks its child again when it succeeded: so many times, or while a condition holds.
+    Repeat {
+        /// How many times.
+        times: Option<u32>,
+        /// While this holds; tested before every round.
+        condition: Option<Expr>,
+    },
+    /// Turns success into failure and failure into success.
+    Invert,
+    /// Failure becomes success.
+    Succeed,
+    /// Succeeds when the condition holds, else fails.
+    Check(Expr),
+    /// Runs for a duration, then succeeds.
+    Wait(Expr),
+    /// Runs until the condition holds, then succeeds.
+    WaitUntil(Expr),
+    /// Statements. Without `until` they run once and succeed; with it they run at every tick until it holds.
+    Act {
+        /// Evaluated before `until` and `fails`.
+        prelude: Vec<Stmt>,
+        /// What it does.
+        body: Vec<Stmt>,
+        /// Success.
+        until: Option<Expr>,
+        /// Failure.
+        fails: Option<Expr>,
+        /// What it does when it is halted while running.
+        halt: Vec<Stmt>,
+    },
+}
+
+/// Decides which of several proposals an actuator gets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Arbiter {
+    /// Actuator port of the owning agent.
+    pub actuator: u32,
+    /// The units it listens to.
+    pub sources: Vec<Source>,
+    /// How it decides.
+    pub strategy: Strategy,
+    /// Types of the locals of its expressions.
+    pub locals: Vec<Type>,
+    /// Agent-level `let`s its expressions use.
+    pub prelude: Vec<Stmt>,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// A unit that proposes commands.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Source {
+    /// Agent type.
+    pub agent: u32,
+    /// Unit of it.
+    pub unit: u32,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// Arbitration strategies. A proposal counts while it is alive (two periods of its unit). When nobody
+/// proposes, the safe action runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Strategy {
+    /// The highest index wins, evaluated at each decision; the first source wins a tie.
+    Priority(Vec<Expr>),
+    /// Subsumption: the topmost layer that proposes and is not inhibited wins; what it suppresses loses.
+    Layers(Vec<Layer>),
+    /// The first source with a proposal wins.
+    Switch,
+    /// Weighted mean of the proposals that are alive (twists and vectors only).
+    Blend(Vec<Expr>),
+}
+
+/// A subsumption layer; same order as the sources, topmost first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Layer {
+    /// Sources it suppresses while it proposes.
+    pub suppresses: Vec<u32>,
+    /// How long it goes on suppressing after its last proposal.
+    pub hold: Option<Expr>,
+    /// While this holds its proposals do not count.
+    pub inhibited: Option<Expr>,
+}

@@ -1,0 +1,114 @@
+//! The built-in functions: names, signatures, one line of documentation each. What they compute is
+//! in `eval/`; `docs/language.md` lists them from here.
+
+use crate::signature::Signature;
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, sync::LazyLock};
+
+macro_rules! functions {
+    ($($variant:ident $signature:literal $doc:literal;)*) => {
+        /// A built-in function.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Function { $(#[doc = $doc] $variant,)* }
+
+        /// Every built-in function with its signature text and documentation.
+        pub const FUNCTIONS: &[(Function, &str, &str)] = &[$((Function::$variant, $signature, $doc),)*];
+    };
+}
+
+functions! {
+    Abs "abs<D>(x: Quantity<D>) -> Quantity<D>" "Absolute value";
+    Min "min<D>(a: Quantity<D>, b: Quantity<D>) -> Quantity<D>" "The smaller of two";
+    Max "max<D>(a: Quantity<D>, b: Quantity<D>) -> Quantity<D>" "The larger of two";
+    Clamp "clamp<D>(x: Quantity<D>, low: Quantity<D>, high: Quantity<D>) -> Quantity<D>" "`x` held between `low` and `high`";
+    Sign "sign<D>(x: Quantity<D>) -> Number" "-1, 0 or 1";
+    Floor "floor(x: Number) -> Int" "The whole number at or below";
+    Ceil "ceil(x: Number) -> Int" "The whole number at or above";
+    Round "round(x: Number) -> Int" "The nearest whole number, halves away from zero";
+    Modulo "modulo<D>(x: Quantity<D>, y: Quantity<D>) -> Quantity<D>" "What remains of `x` divided by `y`, never negative";
+    Sin "sin(angle: Angle) -> Number" "Sine";
+    Cos "cos(angle: Angle) -> Number" "Cosine";
+    Tan "tan(angle: Angle) -> Number" "Tangent";
+    Asin "asin(x: Number) -> Angle" "Arc sine; `x` within -1 .. 1";
+    Acos "acos(x: Number) -> Angle" "Arc cosine; `x` within -1 .. 1";
+    Atan2 "atan2<D>(y: Quantity<D>, x: Quantity<D>) -> Angle" "The angle of the point (x, y)";
+    Exp "exp(x: Number) -> Number" "e to the power `x`";
+    Log "log(x: Number) -> Number" "Natural logarithm; `x` above 0";
+    Hypot "hypot<D>(a: Quantity<D>, b: Quantity<D>) -> Quantity<D>" "Length of the hypotenuse";
+    Wrap "wrap(angle: Angle) -> Angle" "The same direction within -180 deg .. 180 deg";
+    Towards "towards(angle: Angle) -> Heading<map>" "The map heading at `angle` counter-clockwise from east";
+    AngleOf "angle_of<F>(heading: Heading<F>) -> Angle" "The angle of a heading, counter-clockwise from x, within -180 deg .. 180 deg";
+    HeadingOf "heading_of<F, D>(v: Vector<F, D>) -> Heading<F>" "The direction of a vector in the xy-plane; that of a zero vector is x";
+    Polar "polar<F, D>(length: Quantity<D>, heading: Heading<F>) -> Vector<F, D>" "The vector of a length and a heading";
+    Norm "norm<F, D>(v: Vector<F, D>) -> Quantity<D>" "Length of a vector";
+    Unit "unit<F, D>(v: Vector<F, D>) -> Vector<F, Number>" "Vector of length one; a zero vector stays zero";
+    Distance "distance<F>(a: Point<F>, b: Point<F>) -> Length" "Distance between two points";
+    Rotate "rotate<F, D>(v: Vector<F, D>, by: Angle) -> Vector<F, D>" "`v` turned about z, counter-clockwise";
+    PoseAt "pose<F>(at: Point<F>, heading: Heading<F>) -> Pose<F>" "The level pose at a point, facing a heading";
+    Bearing "bearing<F>(of: Point<F>, from: Pose<F>) -> Angle" "Where a point is seen from a pose, counter-clockwise from straight ahead";
+    Place "place<F, G>(pose: Pose<F>, origin: Pose<G>) -> Pose<G>" "`pose`, when the origin of its frame is at `origin`";
+    FromBody "from_body<F, D>(v: Vector<base_link, D>, pose: Pose<F>) -> Vector<F, D>" "A body vector in the frame of the body's pose";
+    ToBody "to_body<F, D>(v: Vector<F, D>, pose: Pose<F>) -> Vector<base_link, D>" "A vector as the body at `pose` sees it";
+    PointFromBody "point_from_body<F>(p: Point<base_link>, pose: Pose<F>) -> Point<F>" "A body point in the frame of the body's pose";
+    PointToBody "point_to_body<F>(p: Point<F>, pose: Pose<F>) -> Point<base_link>" "A point as the body at `pose` sees it";
+    Twist "twist(forward: Velocity, turn: AngularVelocity = 0 rad/s, left: Velocity = 0 m/s, up: Velocity = 0 m/s) -> Twist" "A velocity of the body";
+    CircleIntersections "circle_intersections<F>(a: Point<F>, a_radius: Length, b: Point<F>, b_radius: Length) -> List<Point<F>, 2>" "Where two circles cross in the xy-plane: none, one or two points";
+    FirstContact "first_contact<F>(from: Point<F>, motion: Vector<F>, center: Point<F>, radius: Length) -> Number?" "The fraction (0 .. 1) of `motion` at which a point that starts at `from` first comes within `radius` of `center` in the xy-plane; none when it never does";
+    Inside "inside(p: Point<map>, region: handle Region) -> Bool" "Whether a point is in a region of the world";
+    Length "length<T>(list: List<T, N>) -> Int" "Number of items";
+    At "at<T>(list: List<T, N>, index: Int) -> T?" "The item at `index`, counted from 0";
+    First "first<T>(list: List<T, N>) -> T?" "The first item";
+    Last "last<T>(list: List<T, N>) -> T?" "The last item";
+    Push "push<T>(list: List<T, N>, item: T) -> List<T, N>" "The list with `item` at its end; a full list loses its first item";
+    Sum "sum<D>(list: List<Quantity<D>, N>) -> Quantity<D>" "Sum of the items";
+    Smallest "smallest<D>(list: List<Quantity<D>, N>) -> Quantity<D>?" "The smallest item";
+    Largest "largest<D>(list: List<Quantity<D>, N>) -> Quantity<D>?" "The largest item";
+    Exactly "exactly<D>(value: Quantity<D>) -> Distribution<D>" "The distribution that always gives `value`";
+    Normal "normal<D>(sd: Quantity<D>, mean: Quantity<D> = 0) -> Distribution<D>" "Gaussian";
+    Uniform "uniform<D>(low: Quantity<D>, high: Quantity<D>) -> Distribution<D>" "Uniform between two bounds";
+    Skewed "skewed<D>(best: Quantity<D>, mean: Quantity<D>, worst: Quantity<D>) -> Distribution<D>" "Bounded, with the bulk near `best` and a tail to `worst`";
+    Draw "draw<D>(from: Distribution<D>) -> Quantity<D>" "A value drawn from a distribution, from the run's seed";
+    Low "low<D>(range: Range<D>) -> Quantity<D>" "Lower bound";
+    High "high<D>(range: Range<D>) -> Quantity<D>" "Upper bound";
+    Within "within<D>(x: Quantity<D>, range: Range<D>) -> Bool" "Whether a quantity is in a range";
+}
+
+impl Function {
+    /// The function called `name`.
+    pub fn named(name: &str) -> Option<Function> {
+        BY_NAME.get(name).copied()
+    }
+
+    /// Its signature.
+    pub fn signature(self) -> &'static Signature {
+        &SIGNATURES[&self]
+    }
+
+    /// Whether two calls with the same arguments may give different values.
+    pub fn is_random(self) -> bool {
+        self == Function::Draw
+    }
+}
+
+static SIGNATURES: LazyLock<BTreeMap<Function, Signature>> = LazyLock::new(|| {
+    FUNCTIONS
+        .iter()
+        .map(|(f, text, _)| (*f, Signature::parse(text).unwrap_or_else(|e| panic!("signature `{text}`: {e}"))))
+        .collect()
+});
+
+static BY_NAME: LazyLock<BTreeMap<&'static str, Function>> =
+    LazyLock::new(|| FUNCTIONS.iter().map(|(f, text, _)| (&text[..text.find(['<', '(']).unwrap_or(text.len())], *f)).collect());
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_signature_parses_and_names_itself() {
+        for (f, _, _) in FUNCTIONS {
+            assert_eq!(Function::named(&f.signature().name), Some(*f));
+        }
+    }
+}
