@@ -1,1 +1,13 @@
-//! .
+//! Executes a behaviour graph, deterministically, in virtual time.
+//!
+//! Invariant: knows neither the language nor any robot; touches no file, clock or terminal.
+
+pub mod ports;
+pub mod scene;
+pub mod time;
+pub mod trace;
+
+pub use ports::{Platform, Reading, Readings, Report, WorldTruth};
+pub use scene::Scene;
+pub use time::Time;
+pub use trace::{Event, NoTrace, Record, TraceSink};

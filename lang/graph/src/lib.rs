@@ -13,6 +13,7 @@ pub mod expr;
 pub mod function;
 pub mod mission;
 pub mod pattern;
+pub mod reason;
 pub mod signature;
 pub mod span;
 pub mod types;

@@ -76,9 +76,16 @@ impl Distribution {
 }
 
 /// Texts that registers refer to by index.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Texts(pub Vec<String>);
+
+impl Default for Texts {
+    /// The table of [`crate::reason::REASONS`], which every table starts with.
+    fn default() -> Self {
+        Texts(crate::reason::REASONS.iter().map(|r| (*r).to_string()).collect())
+    }
+}
 
 impl Texts {
     /// Index of `text`, added when new.

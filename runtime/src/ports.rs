@@ -1,0 +1,120 @@
+//! The port contract: what the runtime asks of whatever moves. The simulator and drivers implement
+//! [`Platform`]; nothing above it knows which of them it talks to.
+
+use crate::time::Time;
+
+/// Readings handed over by one poll. Registers of all readings lie in one arena.
+#[derive(Debug, Default)]
+pub struct Readings {
+    /// The readings, in order of delivery, then robot, then sensor.
+    pub items: Vec<Reading>,
+    /// Register values; a reading's are `registers[from..to]`.
+    pub registers: Vec<f64>,
+}
+
+impl Readings {
+    /// Appends a reading with its registers.
+    pub fn push(&mut self, robot: u32, sensor: u32, captured: Time, delivered: Time, registers: &[f64]) {
+        let from = self.registers.len() as u32;
+        self.registers.extend_from_slice(registers);
+        self.items.push(Reading { robot, sensor, captured, delivered, from, to: self.registers.len() as u32 });
+    }
+
+    /// Forgets everything, keeps the memory.
+    pub fn clear(&mut self) {
+        self.items.clear();
+        self.registers.clear();
+    }
+}
+
+/// A stamped reading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Robot, by index in [`crate::scene::Scene::robots`].
+    pub robot: u32,
+    /// Sensor, by index among the `sensor` components of the robot's platform.
+    pub sensor: u32,
+    /// When the world was as it says.
+    pub captured: Time,
+    /// When it arrived; never before `captured`.
+    pub delivered: Time,
+    /// First register in the arena.
+    pub from: u32,
+    /// One past the last register.
+    pub to: u32,
+}
+
+/// A platform reports something besides readings.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Report {
+    /// Two bodies touch (simulators only). Indices of robots; `None` is a thing of the world, named.
+    ContactBegin {
+        /// When.
+        at: Time,
+        /// First robot.
+        robot: u32,
+        /// Second robot, if it is one.
+        other: Option<u32>,
+        /// Name of the other body.
+        with: String,
+    },
+    /// The same two parted.
+    ContactEnd {
+        /// When.
+        at: Time,
+        /// First robot.
+        robot: u32,
+        /// Second robot, if it is one.
+        other: Option<u32>,
+        /// Name of the other body.
+        with: String,
+    },
+    /// The platform of a robot is lost; its safe action has been started by the platform itself.
+    Lost {
+        /// When.
+        at: Time,
+        /// Robot.
+        robot: u32,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// Everything that moves in one run: simulated robots, driven robots, or both.
+///
+/// No call blocks. A driver owns its threads and hands over what has arrived.
+pub trait Platform {
+    /// The next instant at which [`Platform::poll`] would deliver something; `None` when nothing is due
+    /// unless a command comes.
+    fn next_due(&self) -> Option<Time>;
+
+    /// Advances to `now` (never backwards) and hands over all readings with `delivered <= now` and all
+    /// reports since the last poll.
+    fn poll(&mut self, now: Time, readings: &mut Readings, reports: &mut Vec<Report>);
+
+    /// Sends a command to actuator `actuator` (index among the `actuator` components of the robot's
+    /// platform). It holds until the next command or until `expires`, when the safe action starts.
+    fn send(&mut self, now: Time, robot: u32, actuator: u32, command: &[f64], expires: Time);
+
+    /// Starts the robot's safe action and returns its name.
+    fn safe_action(&mut self, now: Time, robot: u32) -> &'static str;
+
+    /// World truth, where there is a simulator that knows it.
+    fn truth(&self) -> Option<&dyn WorldTruth>;
+}
+
+/// What is really so, at the last poll. Only `done`, `expect`, metrics and reports may see it.
+pub trait WorldTruth {
+    /// True pose in `map`: x y z qx qy qz qw.
+    fn pose(&self, robot: u32) -> [f64; 7];
+    /// Path length in metres since the start.
+    fn path_length(&self, robot: u32) -> f64;
+    /// Contacts this robot took part in, each counted once from touch to parting.
+    fn collisions(&self, robot: u32) -> u32;
+    /// Whether it is in contact.
+    fn in_collision(&self, robot: u32) -> bool;
+    /// Contacts of all robots, each counted once.
+    fn total_collisions(&self) -> u32;
+    /// Movers: name and pose, for traces and pictures.
+    fn movers(&self) -> Vec<(String, [f64; 7])>;
+}
