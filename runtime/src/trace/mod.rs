@@ -1,5 +1,6 @@
 //! What is recorded of a run. Where it goes is the sink's business.
 
+mod exact;
 pub mod record;
 
 pub use record::{Event, Record};

@@ -1,5 +1,6 @@
 //! The records of a trace.
 
+use super::exact;
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +23,13 @@ pub struct Record {
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
     /// A reading crossed a port: the input of a run.
-    Reading { robot: u32, sensor: u32, captured: Time, registers: Vec<f64> },
+    Reading {
+        robot: u32,
+        sensor: u32,
+        captured: Time,
+        #[serde(with = "exact::registers")]
+        registers: Vec<f64>,
+    },
     /// A unit was released, ran, and finished. `skipped` says why it did not run.
     Activation {
         robot: u32,
@@ -41,33 +48,95 @@ pub enum Event {
     /// A plan node ended or was halted: `success`, `failure`, `halted`.
     Node { robot: u32, agent: String, unit: String, node: u32, label: String, result: String },
     /// A state of an agent changed.
-    State { robot: u32, agent: String, state: String, registers: Vec<f64> },
+    State {
+        robot: u32,
+        agent: String,
+        state: String,
+        #[serde(with = "exact::registers")]
+        registers: Vec<f64>,
+    },
     /// A message was published or told.
-    Message { robot: u32, agent: String, topic: String, registers: Vec<f64>, #[serde(default, skip_serializing_if = "Option::is_none")] to: Option<String> },
+    Message {
+        robot: u32,
+        agent: String,
+        topic: String,
+        #[serde(with = "exact::registers")]
+        registers: Vec<f64>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to: Option<String>,
+    },
     /// A message was delivered to a mailbox, or dropped on the way (`dropped` says why).
-    Delivery { robot: u32, agent: String, topic: String, message: u64, #[serde(default, skip_serializing_if = "Option::is_none")] dropped: Option<String> },
+    Delivery {
+        robot: u32,
+        agent: String,
+        topic: String,
+        message: u64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        dropped: Option<String>,
+    },
     /// An arbiter decided. Each loser comes with the reason.
     Arbitration { robot: u32, actuator: String, winner: Option<String>, losers: Vec<(String, String)> },
     /// A command crossed a port.
-    Command { robot: u32, actuator: u32, registers: Vec<f64>, expires: Time },
+    Command {
+        robot: u32,
+        actuator: u32,
+        #[serde(with = "exact::registers")]
+        registers: Vec<f64>,
+        expires: Time,
+    },
     /// A safe action began, and why.
     SafeAction { robot: u32, action: String, reason: String },
     /// A parameter changed.
-    Param { param: String, registers: Vec<f64> },
+    Param {
+        param: String,
+        #[serde(with = "exact::registers")]
+        registers: Vec<f64>,
+    },
     /// A remark.
     Note { robot: u32, agent: String, text: String },
     /// World truth of a robot, for pictures and reports.
-    Pose { robot: u32, pose: [f64; 7] },
+    Pose {
+        robot: u32,
+        #[serde(with = "exact::pose")]
+        pose: [f64; 7],
+    },
     /// World truth of a mover, for pictures.
-    Mover { name: String, pose: [f64; 7] },
+    Mover {
+        name: String,
+        #[serde(with = "exact::pose")]
+        pose: [f64; 7],
+    },
     /// Two bodies touched or parted.
-    Contact { robot: u32, #[serde(default, skip_serializing_if = "Option::is_none")] other: Option<u32>, with: String, begin: bool },
+    Contact {
+        robot: u32,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        other: Option<u32>,
+        with: String,
+        begin: bool,
+    },
     /// A goal or sub-goal changed its status: `active`, `achieved`, `failed`. `robot` is absent for goals.
-    Goal { goal: String, #[serde(default, skip_serializing_if = "Option::is_none")] robot: Option<u32>, status: String },
+    Goal {
+        goal: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        robot: Option<u32>,
+        status: String,
+    },
     /// An expectation was decided: held or violated, with its margin.
-    Expectation { index: u32, #[serde(default, skip_serializing_if = "Option::is_none")] robot: Option<u32>, held: bool, #[serde(default, skip_serializing_if = "Option::is_none")] margin: Option<f64> },
+    Expectation {
+        index: u32,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        robot: Option<u32>,
+        held: bool,
+        #[serde(default, skip_serializing_if = "Option::is_none", with = "exact::optional")]
+        margin: Option<f64>,
+    },
     /// Something went wrong in an activation or a platform.
-    Fault { #[serde(default, skip_serializing_if = "Option::is_none")] robot: Option<u32>, agent: String, text: String },
+    Fault {
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        robot: Option<u32>,
+        agent: String,
+        text: String,
+    },
     /// The run ended: `success`, `failed`, `timeout`, `aborted`.
     End { outcome: String, reason: String },
 }
