@@ -9,6 +9,7 @@ pub mod behaviour;
 pub mod component;
 pub mod diagnostic;
 pub mod dim;
+pub mod eval;
 pub mod expr;
 pub mod function;
 pub mod mission;
