@@ -2,11 +2,15 @@
 //!
 //! Invariant: knows neither the language nor any robot; touches no file, clock or terminal.
 
+pub mod engine;
+pub mod mission;
 pub mod ports;
 pub mod scene;
 pub mod time;
 pub mod trace;
 
+pub use engine::{Engine, Outcome, RunReport};
+pub use mission::{Mission, Settings};
 pub use ports::{Platform, Reading, Readings, Report, WorldTruth};
 pub use scene::Scene;
 pub use time::Time;

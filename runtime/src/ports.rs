@@ -17,7 +17,14 @@ impl Readings {
     pub fn push(&mut self, robot: u32, sensor: u32, captured: Time, delivered: Time, registers: &[f64]) {
         let from = self.registers.len() as u32;
         self.registers.extend_from_slice(registers);
-        self.items.push(Reading { robot, sensor, captured, delivered, from, to: self.registers.len() as u32 });
+        self.items.push(Reading {
+            robot,
+            sensor,
+            captured,
+            delivered,
+            from,
+            to: self.registers.len() as u32,
+        });
     }
 
     /// Forgets everything, keeps the memory.

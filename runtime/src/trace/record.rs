@@ -19,6 +19,7 @@ pub struct Record {
 }
 
 /// What happened. Agents are `agent@robot`; values are in register form unless said otherwise.
+#[allow(missing_docs, reason = "the fields are what the comment of their variant says")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
@@ -94,11 +95,13 @@ pub enum Event {
     },
     /// A remark.
     Note { robot: u32, agent: String, text: String },
-    /// World truth of a robot, for pictures and reports.
+    /// World truth of a robot, for pictures, reports and replays; `path_m` is the length of its path so far.
     Pose {
         robot: u32,
         #[serde(with = "exact::pose")]
         pose: [f64; 7],
+        #[serde(default)]
+        path_m: f64,
     },
     /// World truth of a mover, for pictures.
     Mover {
