@@ -2,10 +2,13 @@
 //!
 //! Invariant: knows neither the language nor any robot; touches no file, clock or terminal.
 
+pub mod arbitration;
 pub mod engine;
 pub mod mission;
+pub mod nodes;
 pub mod ports;
 pub mod scene;
+pub mod seed;
 pub mod time;
 pub mod trace;
 

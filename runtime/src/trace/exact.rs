@@ -80,6 +80,19 @@ pub(crate) mod pose {
     }
 }
 
+/// A number.
+pub(crate) mod number {
+    use super::*;
+
+    pub(crate) fn serialize<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
+        Exact(*x).serialize(s)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+        Ok(Exact::deserialize(d)?.0)
+    }
+}
+
 /// A number that may be absent.
 pub(crate) mod optional {
     use super::*;

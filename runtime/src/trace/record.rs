@@ -100,7 +100,7 @@ pub enum Event {
         robot: u32,
         #[serde(with = "exact::pose")]
         pose: [f64; 7],
-        #[serde(default)]
+        #[serde(default, with = "exact::number")]
         path_m: f64,
     },
     /// World truth of a mover, for pictures.
