@@ -18,38 +18,115 @@ pub struct Model {
 }
 
 /// Roles whose entries have a name (`sensor ir = …`); all others stand alone (`body = …`).
-pub const NAMED_ROLES: &[&str] = &["sensor", "actuator", "wall", "obstacle", "region", "mover", "material", "topic"];
+pub const NAMED_ROLES: &[&str] =
+    &["sensor", "actuator", "wall", "obstacle", "region", "mover", "material", "topic"];
 /// Roles a platform profile has.
 pub const PLATFORM_ROLES: &[&str] = &["body", "drive", "sensor", "actuator", "safe", "prepare", "finish"];
 /// Roles a world has.
 pub const WORLD_ROLES: &[&str] = &["bounds", "wall", "obstacle", "region", "mover", "material"];
 
 const TABLE: &[(&str, &str, &str)] = &[
-    ("body", "cylinder(radius: Length, height: Length, mass: Mass = 1 kg)", "An upright cylinder around the origin of base_link"),
-    ("drive", "differential(wheel_radius: Length, wheel_base: Length, max_speed: Velocity, wheel_acceleration: AngularAcceleration, lag: Duration = 0 s, wheel_error: Distribution<Number> = 0, rotation_error: Distribution<Number> = 0)", "Two driven wheels; each follows its speed with a first-order lag and an acceleration limit; errors are relative, the rotation error is drawn once a turn"),
-    ("drive", "holonomic(max_speed: Velocity, max_turn: AngularVelocity, lag: Duration = 0 s, error: Distribution<Number> = 0)", "Moves in any direction and turns at will"),
-    ("sensor", "ideal_pose(period: Duration? = none, latency: Duration = 0 s) -> Pose<map>", "The true pose; for abstract robots only. Without a period: at every step"),
-    ("sensor", "discs(range: Length, capacity: Int, period: Duration? = none, latency: Duration = 0 s) -> List<Disc, capacity>", "Movers and round obstacles whose rim is within range, nearest first; not robots"),
-    ("sensor", "infrared(bearings: List<Angle, N>, range: Range<Length>, period: Duration, latency: Duration = 0 s, noise: Distribution<Number> = 0, false_alarm: Number = 0, height: Length = 2 cm) -> List<Beam, bearings>", "Range by reflected light from the rim of the body, one beam a bearing; noise is relative to the range; `false_alarm` is the chance that a beam with nothing in range reports something anywhere in its range"),
-    ("sensor", "ultrasonic(bearings: List<Angle, N>, range: Range<Length>, cone: Angle, period: Duration, latency: Duration = 0 s, noise: Distribution<Length> = 0, height: Length = 2 cm) -> List<Beam, bearings>", "Range to the nearest surface within a cone around each bearing"),
-    ("sensor", "laser(beams: Int, field: Range<Angle>, range: Range<Length>, period: Duration, latency: Duration = 0 s, noise: Distribution<Length> = 0, height: Length = 20 cm) -> List<Beam, beams>", "A planar scan, first beam at the low end of the field"),
-    ("sensor", "encoders(pulse: Length, period: Duration, latency: Duration = 0 s) -> Encoders", "Pulses counted at each wheel since the start"),
-    ("sensor", "odometry(pulse: Length, period: Duration, latency: Duration = 0 s) -> Odometry", "Pose in odom and twist, integrated from wheel pulses; starts at the origin"),
-    ("actuator", "twist(lifetime: Duration? = none) -> Twist", "Velocity of the body. A command lives for two periods of its unit unless a lifetime is given"),
-    ("actuator", "strides(duration: Duration) -> Stride", "A straight stride of a given heading and length, walked at constant speed within the duration"),
+    (
+        "body",
+        "cylinder(radius: Length, height: Length, mass: Mass = 1 kg)",
+        "An upright cylinder around the origin of base_link",
+    ),
+    (
+        "drive",
+        "differential(wheel_radius: Length, wheel_base: Length, max_speed: Velocity, wheel_acceleration: AngularAcceleration, lag: Duration = 0 s, wheel_error: Distribution<Number> = 0, rotation_error: Distribution<Number> = 0)",
+        "Two driven wheels; each follows its speed with a first-order lag and an acceleration limit; errors are relative, the rotation error is drawn once a turn",
+    ),
+    (
+        "drive",
+        "holonomic(max_speed: Velocity, max_turn: AngularVelocity, lag: Duration = 0 s, error: Distribution<Number> = 0)",
+        "Moves in any direction and turns at will",
+    ),
+    (
+        "sensor",
+        "ideal_pose(period: Duration? = none, latency: Duration = 0 s) -> Pose<map>",
+        "The true pose; for abstract robots only. Without a period: at every step",
+    ),
+    (
+        "sensor",
+        "discs(range: Length, capacity: Int, period: Duration? = none, latency: Duration = 0 s) -> List<Disc, capacity>",
+        "Movers and round obstacles whose rim is within range, nearest first; not robots",
+    ),
+    (
+        "sensor",
+        "infrared(bearings: List<Angle, N>, range: Range<Length>, period: Duration, latency: Duration = 0 s, noise: Distribution<Number> = 0, false_alarm: Number = 0, height: Length = 2 cm) -> List<Beam, bearings>",
+        "Range by reflected light from the rim of the body, one beam a bearing; noise is relative to the range; `false_alarm` is the chance that a beam with nothing in range reports something anywhere in its range",
+    ),
+    (
+        "sensor",
+        "ultrasonic(bearings: List<Angle, N>, range: Range<Length>, cone: Angle, period: Duration, latency: Duration = 0 s, noise: Distribution<Length> = 0, height: Length = 2 cm) -> List<Beam, bearings>",
+        "Range to the nearest surface within a cone around each bearing",
+    ),
+    (
+        "sensor",
+        "laser(beams: Int, field: Range<Angle>, range: Range<Length>, period: Duration, latency: Duration = 0 s, noise: Distribution<Length> = 0, height: Length = 20 cm) -> List<Beam, beams>",
+        "A planar scan, first beam at the low end of the field",
+    ),
+    (
+        "sensor",
+        "encoders(pulse: Length, period: Duration, latency: Duration = 0 s) -> Encoders",
+        "Pulses counted at each wheel since the start",
+    ),
+    (
+        "sensor",
+        "odometry(pulse: Length, period: Duration, latency: Duration = 0 s) -> Odometry",
+        "Pose in odom and twist, integrated from wheel pulses; starts at the origin",
+    ),
+    (
+        "actuator",
+        "twist(lifetime: Duration? = none) -> Twist",
+        "Velocity of the body. A command lives for two periods of its unit unless a lifetime is given",
+    ),
+    (
+        "actuator",
+        "strides(duration: Duration) -> Stride",
+        "A straight stride of a given heading and length, walked at constant speed within the duration",
+    ),
     ("safe", "stop()", "Stand still; always possible"),
     ("prepare", "stand()", "Nothing to prepare"),
     ("finish", "stop()", "Stand still"),
     ("bounds", "rectangle(low: Point<map>, high: Point<map>)", "The ground that pictures show; no wall"),
-    ("wall", "segment(from: Point<map>, to: Point<map>, height: Length = 50 cm, thickness: Length = 1 cm, material: Text = \"plaster\")", "A straight wall, centred on the segment"),
-    ("obstacle", "cylinder(at: Point<map>, radius: Length, height: Length = 50 cm, material: Text = \"plaster\")", "An upright cylinder"),
-    ("obstacle", "box(at: Point<map>, size: Vector<base_link>, heading: Heading<map> = 0, material: Text = \"plaster\")", "A box; size is length, width, height"),
+    (
+        "wall",
+        "segment(from: Point<map>, to: Point<map>, height: Length = 50 cm, thickness: Length = 1 cm, material: Text = \"plaster\")",
+        "A straight wall, centred on the segment",
+    ),
+    (
+        "obstacle",
+        "cylinder(at: Point<map>, radius: Length, height: Length = 50 cm, material: Text = \"plaster\")",
+        "An upright cylinder",
+    ),
+    (
+        "obstacle",
+        "box(at: Point<map>, size: Vector<base_link>, heading: Heading<map> = 0, material: Text = \"plaster\")",
+        "A box; size is length, width, height",
+    ),
     ("region", "circle(at: Point<map>, radius: Length)", "A round region of the ground"),
     ("region", "rectangle(low: Point<map>, high: Point<map>)", "An axis-parallel region of the ground"),
-    ("mover", "disc(radius: Length, height: Length = 50 cm, path: List<Point<map>, N>, speed: Velocity, phase: Number = 0, material: Text = \"plaster\")", "A cylinder that walks along a path and back, for ever; phase is where in that round trip it starts, 0 .. 1"),
-    ("mover", "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, material: Text = \"plaster\")", "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds and by keep-out regions"),
-    ("material", "plain(color: Text, reflectance: Number = 0.8)", "A colour, as #rrggbb, and how much infrared it reflects"),
-    ("topic", "channel(delay: Duration = 1 us, loss: Number = 0, range: Length? = none, lifetime: Duration? = none, capacity: Int = 16)", "How messages travel: delay, chance of loss for each receiver, radio range (everywhere when none), how long the latest message counts (two periods of the publisher when none), how many senders are heard or messages wait"),
+    (
+        "mover",
+        "disc(radius: Length, height: Length = 50 cm, path: List<Point<map>, N>, speed: Velocity, phase: Number = 0, material: Text = \"plaster\")",
+        "A cylinder that walks along a path and back, for ever; phase is where in that round trip it starts, 0 .. 1",
+    ),
+    (
+        "mover",
+        "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, material: Text = \"plaster\")",
+        "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds and by keep-out regions",
+    ),
+    (
+        "material",
+        "plain(color: Text, reflectance: Number = 0.8)",
+        "A colour, as #rrggbb, and how much infrared it reflects",
+    ),
+    (
+        "topic",
+        "channel(delay: Duration = 1 us, loss: Number = 0, range: Length? = none, lifetime: Duration? = none, capacity: Int = 16)",
+        "How messages travel: delay, chance of loss for each receiver, radio range (everywhere when none), how long the latest message counts (two periods of the publisher when none), how many senders are heard or messages wait",
+    ),
 ];
 
 /// Every model.

@@ -13,7 +13,16 @@ pub struct Dim(pub [i8; 8]);
 
 const BASE: [&str; 8] = ["m", "kg", "s", "A", "K", "rad", "step", "px"];
 
-const fn d(length: i8, mass: i8, time: i8, current: i8, temperature: i8, angle: i8, step: i8, pixel: i8) -> Dim {
+const fn d(
+    length: i8,
+    mass: i8,
+    time: i8,
+    current: i8,
+    temperature: i8,
+    angle: i8,
+    step: i8,
+    pixel: i8,
+) -> Dim {
     Dim([length, mass, time, current, temperature, angle, step, pixel])
 }
 
@@ -209,7 +218,8 @@ impl Unit {
             let digits = atom.len() - atom.trim_end_matches(|c: char| c.is_ascii_digit()).len();
             let (name, exponent) = atom.split_at(atom.len() - digits);
             let name = name.trim_end_matches('^');
-            let mut n: i32 = if exponent.is_empty() { 1 } else { exponent.parse().map_err(|_| atom.to_string())? };
+            let mut n: i32 =
+                if exponent.is_empty() { 1 } else { exponent.parse().map_err(|_| atom.to_string())? };
             if name.is_empty() && exponent == "1" && i == 0 {
                 below = part.ends_with('/');
                 continue;
@@ -217,10 +227,17 @@ impl Unit {
             if below {
                 n = -n;
             }
-            let (_, dim, scale) = ATOMS.iter().find(|(a, _, _)| *a == name).ok_or_else(|| atom.to_string())?;
+            let (_, dim, scale) =
+                ATOMS.iter().find(|(a, _, _)| *a == name).ok_or_else(|| atom.to_string())?;
             unit.dim = dim.power(n).and_then(|p| unit.dim.times(p)).ok_or_else(|| atom.to_string())?;
             match scale {
-                Scale::Ten(t) => unit.ten = t.checked_mul(n).and_then(|t| t.checked_add(unit.ten)).filter(|t| t.abs() < 400).ok_or_else(|| atom.to_string())?,
+                Scale::Ten(t) => {
+                    unit.ten = t
+                        .checked_mul(n)
+                        .and_then(|t| t.checked_add(unit.ten))
+                        .filter(|t| t.abs() < 400)
+                        .ok_or_else(|| atom.to_string())?
+                }
                 Scale::Factor(f) => unit.factor *= libm::pow(*f, f64::from(n)),
             }
             below = part.ends_with('/');

@@ -346,7 +346,8 @@ mod flat {
                 let (mut args, mut depth) = (Vec::new(), 0);
                 for a in n.args {
                     let taken = done.get_mut(a as usize).and_then(Option::take);
-                    let (e, d) = taken.ok_or_else(|| format!("node {i} uses node {a}, which is not free before it"))?;
+                    let (e, d) = taken
+                        .ok_or_else(|| format!("node {i} uses node {a}, which is not free before it"))?;
                     depth = depth.max(d);
                     args.push(e);
                 }

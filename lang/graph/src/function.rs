@@ -94,12 +94,15 @@ impl Function {
 static SIGNATURES: LazyLock<BTreeMap<Function, Signature>> = LazyLock::new(|| {
     FUNCTIONS
         .iter()
-        .map(|(f, text, _)| (*f, Signature::parse(text).unwrap_or_else(|e| panic!("signature `{text}`: {e}"))))
+        .map(|(f, text, _)| {
+            (*f, Signature::parse(text).unwrap_or_else(|e| panic!("signature `{text}`: {e}")))
+        })
         .collect()
 });
 
-static BY_NAME: LazyLock<BTreeMap<&'static str, Function>> =
-    LazyLock::new(|| FUNCTIONS.iter().map(|(f, text, _)| (&text[..text.find(['<', '(']).unwrap_or(text.len())], *f)).collect());
+static BY_NAME: LazyLock<BTreeMap<&'static str, Function>> = LazyLock::new(|| {
+    FUNCTIONS.iter().map(|(f, text, _)| (&text[..text.find(['<', '(']).unwrap_or(text.len())], *f)).collect()
+});
 
 #[cfg(test)]
 mod tests {

@@ -73,7 +73,9 @@ impl Pattern {
             (Pattern::Vector(v, d), Type::Vector(f, e)) => vars.bind_frame(v, f) && d.matches(*e, vars),
             (Pattern::Range(d), Type::Range(e)) => d.matches(*e, vars),
             (Pattern::Distribution(d), Type::Distribution(e)) => d.matches(*e, vars),
-            (Pattern::List(p, n), Type::List(t, m)) => (*m == 0 || p.matches(t, vars)) && vars.bind_capacity(n, *m),
+            (Pattern::List(p, n), Type::List(t, m)) => {
+                (*m == 0 || p.matches(t, vars)) && vars.bind_capacity(n, *m)
+            }
             (Pattern::Option(p), Type::Option(t)) => p.matches(t, vars),
             (Pattern::Exact(e), _) => t.fits(e),
             _ => false,
@@ -264,7 +266,9 @@ fn parse_nested(text: &str, depth: usize) -> Result<Pattern, String> {
         "Text" => exact(Type::Text),
         "Twist" => exact(Type::Twist),
         _ if Dim::named(text).is_some() => exact(Type::Quantity(Dim::named(text).unwrap_or_default())),
-        _ if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !text.is_empty() => exact(Type::Record(text.into())),
+        _ if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !text.is_empty() => {
+            exact(Type::Record(text.into()))
+        }
         _ => Err(bad()),
     }
 }

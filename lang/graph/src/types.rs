@@ -188,10 +188,18 @@ impl TypeTable {
             Type::Distribution(_) => 4,
             Type::Matrix(r, c) => usize::from(*r) * usize::from(*c),
             Type::Option(t) => 1 + self.width_within(t, depth - 1),
+            Type::List(_, 0) => 1,
             Type::List(t, n) => self.width_within(t, depth - 1).saturating_mul(*n as usize).saturating_add(1),
             Type::Record(n) => {
                 let fields = self.records.get(n).map(|r| r.fields.as_slice()).unwrap_or_default();
-                fields.iter().fold(0, |w: usize, (_, t)| w.saturating_add(self.width_within(t, depth - 1)))
+                // A record that holds itself is as wide as can be; one look at it is enough.
+                let mut width = 0;
+                for (_, t) in fields {
+                    if width < MAX_WIDTH {
+                        width += self.width_within(t, depth - 1);
+                    }
+                }
+                width
             }
         };
         w.min(MAX_WIDTH)

@@ -66,7 +66,10 @@ fn same_quantity(a: &Type, b: &Type) -> Option<Type> {
 /// Whether `==` is defined: between values of one type that hold no lists.
 fn comparable(a: &Type, b: &Type) -> bool {
     match (a, b) {
-        (Type::List(..) | Type::Matrix(..) | Type::Record(_) | Type::Distribution(_) | Type::Option(_), _) => false,
+        (
+            Type::List(..) | Type::Matrix(..) | Type::Record(_) | Type::Distribution(_) | Type::Option(_),
+            _,
+        ) => false,
         (Type::Quantity(_) | Type::Int, _) => number(a).is_some() && number(a) == number(b),
         _ => a == b,
     }

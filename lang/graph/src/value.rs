@@ -108,7 +108,7 @@ impl Value {
         let end = out.len() + table.width(t);
         match (self, t) {
             (Value::Bool(b), Type::Bool) => out.push(f64::from(u8::from(*b))),
-            (Value::Int(i), Type::Int | Type::Quantity(_)) => out.push(*i as f64),
+            (Value::Int(i), Type::Int | Type::Quantity(_) | Type::Handle(_)) => out.push(*i as f64),
             (Value::Number(x), Type::Quantity(_) | Type::Heading(_)) => out.push(*x),
             (Value::Text(s), Type::Text) => out.push(texts.intern(s) as f64),
             (Value::Variant(v), Type::Enum(n)) => {
@@ -120,7 +120,9 @@ impl Value {
             (Value::Twist(v), Type::Twist) => out.extend(v),
             (Value::Range(a, b), Type::Range(_)) => out.extend([a, b]),
             (Value::Distribution(d), Type::Distribution(_)) => out.extend(d.registers()),
-            (Value::Matrix(m), Type::Matrix(r, c)) if m.len() == usize::from(*r) * usize::from(*c) => out.extend(m),
+            (Value::Matrix(m), Type::Matrix(r, c)) if m.len() == usize::from(*r) * usize::from(*c) => {
+                out.extend(m)
+            }
             (Value::Record(fields), Type::Record(n)) => {
                 let record = table.records.get(n)?;
                 if record.fields.len() != fields.len() {
@@ -169,7 +171,9 @@ impl Value {
             Type::Pose(_) => Value::Pose(std::array::from_fn(at)),
             Type::Twist => Value::Twist(std::array::from_fn(at)),
             Type::Range(_) => Value::Range(at(0), at(1)),
-            Type::Distribution(_) => Value::Distribution(Distribution::from_registers(&[at(0), at(1), at(2), at(3)])),
+            Type::Distribution(_) => {
+                Value::Distribution(Distribution::from_registers(&[at(0), at(1), at(2), at(3)]))
+            }
             Type::Matrix(..) => Value::Matrix((0..table.width(t)).map(at).collect()),
             Type::Record(n) => {
                 let mut from = 0;
@@ -189,12 +193,19 @@ impl Value {
                 let (w, count) = (table.width(t), (at(0) as usize).min(*n as usize));
                 Value::List(
                     (0..count)
-                        .map(|i| Value::from_registers(r.get(1 + i * w..).unwrap_or_default(), t, table, texts))
+                        .map(|i| {
+                            Value::from_registers(r.get(1 + i * w..).unwrap_or_default(), t, table, texts)
+                        })
                         .collect(),
                 )
             }
             Type::Option(t) => match at(0) as usize {
-                0 => Value::Some(Box::new(Value::from_registers(r.get(1..).unwrap_or_default(), t, table, texts))),
+                0 => Value::Some(Box::new(Value::from_registers(
+                    r.get(1..).unwrap_or_default(),
+                    t,
+                    table,
+                    texts,
+                ))),
                 n => Value::None(texts.get(n - 1).to_string()),
             },
         }
