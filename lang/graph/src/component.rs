@@ -34,12 +34,12 @@ const TABLE: &[(&str, &str, &str)] = &[
     (
         "drive",
         "differential(wheel_radius: Length, wheel_base: Length, max_speed: Velocity, wheel_acceleration: AngularAcceleration, lag: Duration = 0 s, wheel_error: Distribution<Number> = 0, rotation_error: Distribution<Number> = 0)",
-        "Two driven wheels; each follows its speed with a first-order lag and an acceleration limit; errors are relative, the rotation error is drawn once a turn",
+        "Two driven wheels; each follows its speed with a first-order lag and an acceleration limit; errors are relative, the wheel error is drawn once a revolution of the wheel, the rotation error once a turn",
     ),
     (
         "drive",
         "holonomic(max_speed: Velocity, max_turn: AngularVelocity, lag: Duration = 0 s, error: Distribution<Number> = 0)",
-        "Moves in any direction and turns at will",
+        "Moves in any direction and turns at will; the error is relative, drawn once a motion (a stride, or a twist unlike the last)",
     ),
     (
         "sensor",

@@ -1,0 +1,188 @@
+//! The simulator: a scene whose robots are driven through the port contract.
+//!
+//! Motion is planned in pieces of constant velocity ([`body`]), so the world can be asked about any instant
+//! up to now. A sensor captures at multiples of its period and delivers a latency later. What a poll
+//! returns depends on the commands and the instant alone, not on earlier polls.
+
+mod args;
+mod body;
+mod collision;
+mod geometry;
+mod index;
+mod motion;
+mod movers;
+mod noise;
+mod scene;
+mod schedule;
+mod sensors;
+mod truth;
+
+use body::Body;
+use collision::Collisions;
+use motion::{Drive, Stride};
+use movers::Mover;
+use scene::Things;
+use schedule::Schedule;
+use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
+
+/// With robots or movers whose plans grow as time goes on, contacts are checked at least that often (ns), so
+/// that plans can be forgotten.
+const CHECK: i64 = 100_000_000;
+
+/// Commands are limited to this in size: beyond it arithmetic overflows.
+const LARGEST: f64 = 1e12;
+
+/// A simulated world.
+#[derive(Debug)]
+pub struct Simulator {
+    now: i64,
+    /// Robots, then movers.
+    bodies: Vec<Body>,
+    drives: Vec<Box<dyn Drive>>,
+    /// Robots that take twists: their motion is planned as time goes on.
+    continuous: Vec<u32>,
+    movers: Vec<Mover>,
+    things: Things,
+    collisions: Collisions,
+    schedule: Schedule,
+    /// By platform.
+    actuators: Vec<Vec<Actuator>>,
+    /// Platform of each robot.
+    platforms: Vec<u32>,
+}
+
+/// What an actuator does with a command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Actuator {
+    /// Registers: vx vy vz, wx wy wz in base_link.
+    Twist,
+    /// Registers: heading in map, length.
+    Strides {
+        /// How long a stride takes (ns).
+        duration: i64,
+    },
+}
+
+impl Simulator {
+    /// Builds the simulation of a scene. The error says which part of the scene cannot be simulated and why.
+    pub fn new(scene: &Scene) -> Result<Simulator, String> {
+        let chassis = scene.platforms.iter().map(scene::chassis).collect::<Result<Vec<_>, _>>()?;
+        let actuators = scene::actuators(scene, &chassis)?;
+        let things = scene::things(scene)?;
+        let population = scene::population(scene, &chassis)?;
+        let platforms: Vec<u32> = scene.robots.iter().map(|r| r.platform).collect();
+        let twists = |i: &u32| actuators[platforms[*i as usize] as usize].contains(&Actuator::Twist);
+        Ok(Simulator {
+            now: 0,
+            continuous: (0..platforms.len() as u32).filter(twists).collect(),
+            collisions: Collisions::new(platforms.len(), &population.bodies),
+            schedule: Schedule::new(scene, &chassis)?,
+            bodies: population.bodies,
+            drives: population.drives,
+            movers: population.movers,
+            things,
+            actuators,
+            platforms,
+        })
+    }
+
+    /// Plans all motion up to `t`.
+    fn extend(&mut self, t: i64) {
+        let checked = self.collisions.checked();
+        for i in &self.continuous {
+            self.drives[*i as usize].extend(&mut self.bodies[*i as usize], t, checked);
+        }
+        let movers = &mut self.bodies[self.drives.len()..];
+        for (mover, body) in self.movers.iter_mut().zip(movers) {
+            mover.extend(body, t, checked);
+        }
+    }
+
+    /// Goes on to `now`: plans, captures, and keeps the search for contacts up to date.
+    fn advance(&mut self, now: i64) {
+        loop {
+            let grows = !self.continuous.is_empty();
+            let check = if grows { self.collisions.checked().saturating_add(CHECK) } else { i64::MAX };
+            let t = self.schedule.next_capture().min(self.collisions.expires()).min(check);
+            if t > now || t == i64::MAX {
+                break;
+            }
+            self.extend(t);
+            self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things);
+            if t == check || t == self.collisions.expires() {
+                self.collisions.sweep(&self.bodies, &self.things, t);
+            }
+            if t == self.collisions.expires() {
+                self.collisions.gather(&self.bodies, &self.things, t);
+            }
+        }
+        self.extend(now);
+        self.now = now;
+    }
+
+    /// The robot's drive and body, when there is such a robot.
+    fn robot(&mut self, robot: u32) -> Option<(&mut dyn Drive, &mut Body)> {
+        let drive = self.drives.get_mut(robot as usize)?;
+        Some((drive.as_mut(), self.bodies.get_mut(robot as usize)?))
+    }
+
+    fn stop(&mut self, robot: u32) {
+        let (now, checked) = (self.now, self.collisions.checked());
+        if let Some((drive, body)) = self.robot(robot) {
+            drive.stop(body, now, checked);
+        }
+    }
+}
+
+impl Platform for Simulator {
+    /// Deliveries of readings. A contact makes no instant due: the first poll at or after it reports it,
+    /// with its exact time.
+    fn next_due(&self) -> Option<Time> {
+        self.schedule.next_delivery()
+    }
+
+    fn poll(&mut self, now: Time, readings: &mut Readings, reports: &mut Vec<Report>) {
+        let now = now.0.max(self.now);
+        self.advance(now);
+        self.collisions.sweep(&self.bodies, &self.things, now);
+        self.collisions.take(reports);
+        self.schedule.deliver(Time(now), readings);
+    }
+
+    /// A command of the wrong width, or with a number that is not finite, stops the robot.
+    fn send(&mut self, now: Time, robot: u32, actuator: u32, command: &[f64], expires: Time) {
+        self.advance(now.0.max(self.now));
+        let (now, checked) = (self.now, self.collisions.checked());
+        let platform = self.platforms.get(robot as usize).and_then(|p| self.actuators.get(*p as usize));
+        let actuator = platform.and_then(|a| a.get(actuator as usize)).copied();
+        if !command.iter().all(|x| x.is_finite()) || expires.0 <= now {
+            return self.stop(robot);
+        }
+        let limited = |x: f64| x.clamp(-LARGEST, LARGEST);
+        match (actuator, command) {
+            (Some(Actuator::Twist), [a, b, c, d, e, f]) => {
+                let twist = [*a, *b, *c, *d, *e, *f].map(limited);
+                if let Some((drive, body)) = self.robot(robot) {
+                    drive.twist(body, now, twist, expires.0, checked);
+                }
+            }
+            (Some(Actuator::Strides { duration }), [heading, length]) => {
+                let stride = Stride { heading: limited(*heading), length: limited(*length), duration };
+                if let Some((drive, body)) = self.robot(robot) {
+                    drive.stride(body, now, stride, expires.0, checked);
+                }
+            }
+            _ => self.stop(robot),
+        }
+    }
+
+    fn safe_action(&mut self, now: Time, robot: u32) -> &'static str {
+        self.advance(now.0.max(self.now));
+        self.stop(robot);
+        "stop"
+    }
+
+    fn truth(&self) -> Option<&dyn WorldTruth> {
+        Some(self)
+    }
+}

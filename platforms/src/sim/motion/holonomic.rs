@@ -1,0 +1,184 @@
+//! A body that moves in any direction and turns at will.
+
+use super::{Drive, DriveModel, Lag, Stride, Travel, chord, next_substep, span, stream, stride};
+use crate::sim::{
+    args::Args,
+    body::{Body, Piece, Place, seconds},
+    geometry::{along, turned},
+    noise::{self, Stream},
+};
+use soifra_graph::Distribution;
+use std::sync::Arc;
+
+/// Parameters, by platform.
+#[derive(Debug, Clone)]
+pub struct Model(Arc<Parameters>);
+
+#[derive(Debug)]
+struct Parameters {
+    max_speed: f64,
+    max_turn: f64,
+    lag: Lag,
+    error: Distribution,
+}
+
+impl Model {
+    /// From `holonomic(…)`.
+    pub fn new(args: Args<'_>) -> Result<Model, String> {
+        Ok(Model(Arc::new(Parameters {
+            max_speed: args.positive("max_speed")?,
+            max_turn: args.at_least_zero("max_turn")?,
+            lag: Lag { tau: args.at_least_zero("lag")?, limit: f64::INFINITY },
+            error: args.distribution("error")?,
+        })))
+    }
+}
+
+impl DriveModel for Model {
+    fn drive(&self, seed: u64, source: &str) -> Box<dyn Drive> {
+        Box::new(Holonomic {
+            model: Arc::clone(&self.0),
+            since: 0,
+            velocity: [0.0; 3],
+            reckoned: ([0.0; 2], 0.0),
+            target: [0.0; 3],
+            expires: i64::MAX,
+            walking: false,
+            factor: [1.0; 2],
+            noise: stream(!noise::is_none(self.0.error), seed, source),
+        })
+    }
+
+    fn top_speed(&self) -> f64 {
+        if noise::is_none(self.0.error) { self.0.max_speed } else { 2.0 * self.0.max_speed }
+    }
+    fn strides(&self) -> bool {
+        true
+    }
+    fn wheels(&self) -> bool {
+        false
+    }
+}
+
+/// One robot's motion in its own frame: ahead, left, turn. The ground sees `factor` times that, for way and
+/// turn, drawn anew for every motion: every stride, and every twist that differs from the one before.
+#[derive(Debug)]
+pub struct Holonomic {
+    model: Arc<Parameters>,
+    /// Velocity and reckoning are those of this instant (ns).
+    since: i64,
+    velocity: [f64; 3],
+    /// Position and heading in odom, as the robot can reckon: without the errors of the drive.
+    reckoned: ([f64; 2], f64),
+    target: [f64; 3],
+    expires: i64,
+    /// A stride is under way until it expires: no lag, and rest after it is planned already.
+    walking: bool,
+    factor: [f64; 2],
+    noise: Option<Box<Stream>>,
+}
+
+impl Holonomic {
+    /// Velocity at `t`, and the way ahead, to the left and turned since then.
+    fn state(&self, t: i64) -> ([f64; 3], [f64; 3]) {
+        if self.walking {
+            let dt = seconds(self.since, t.min(self.expires));
+            let over = t >= self.expires;
+            return (if over { [0.0; 3] } else { self.velocity }, self.velocity.map(|v| v * dt));
+        }
+        let (mut velocity, mut way) = ([0.0; 3], [0.0; 3]);
+        let dt = seconds(self.since, t);
+        for i in 0..3 {
+            (velocity[i], way[i]) = self.model.lag.follow(self.velocity[i], self.target[i], dt);
+        }
+        (velocity, way)
+    }
+
+    fn reckon(&self, way: [f64; 3]) -> ([f64; 2], f64) {
+        let (at, heading) = self.reckoned;
+        (along(at, chord(heading, way[0], way[1], way[2], 1.0), 1.0), heading + way[2])
+    }
+
+    fn advance(&mut self, t: i64) {
+        let (velocity, way) = self.state(t);
+        self.reckoned = self.reckon(way);
+        (self.velocity, self.since) = (velocity, t);
+    }
+
+    fn draw(&mut self) {
+        if let Some(noise) = &mut self.noise {
+            self.factor = std::array::from_fn(|_| noise.factor(self.model.error));
+        }
+    }
+
+    /// Plans one piece from `t`, the instant of the velocity, on.
+    fn plan(&mut self, body: &mut Body, t: i64, from: Place, checked: i64) {
+        if t >= self.expires {
+            (self.target, self.expires) = ([0.0; 3], i64::MAX);
+        }
+        if self.model.lag.tau == 0.0 {
+            self.velocity = self.target;
+        }
+        let v = self.velocity;
+        let steady = v == self.target;
+        if steady && v == [0.0; 3] {
+            return body.push(Piece::rest(t, from), checked);
+        }
+        if steady && v[2] == 0.0 {
+            let (s, c) = libm::sincos(from.heading);
+            let ground = turned([v[0] * self.factor[0], v[1] * self.factor[0]], c, s);
+            let speed = libm::hypot(ground[0], ground[1]);
+            return body.push(Piece::moving(t, self.expires, from, ground, 0.0, speed), checked);
+        }
+        let end = next_substep(t).min(self.expires);
+        let dt = span(t, end);
+        let (_, way) = self.state(end);
+        let (ahead, left, turn) = (way[0] * self.factor[0], way[1] * self.factor[0], way[2] * self.factor[1]);
+        let velocity = chord(from.heading, ahead, left, turn, dt);
+        let speed = libm::hypot(ahead, left) / dt;
+        body.push(Piece::moving(t, end, from, velocity, turn / dt, speed), checked);
+    }
+}
+
+impl Drive for Holonomic {
+    fn extend(&mut self, body: &mut Body, until: i64, checked: i64) {
+        while body.planned() < until {
+            let t = body.planned();
+            self.advance(t);
+            self.plan(body, t, body.place(t), checked);
+        }
+    }
+
+    /// Ahead, left and turn count; too fast a twist is slowed down in its direction.
+    fn twist(&mut self, body: &mut Body, now: i64, twist: [f64; 6], expires: i64, checked: i64) {
+        self.extend(body, now, checked);
+        self.advance(now);
+        let scale = (self.model.max_speed / libm::hypot(twist[0], twist[1])).min(1.0);
+        let turn = twist[5].clamp(-self.model.max_turn, self.model.max_turn);
+        let target = [twist[0] * scale, twist[1] * scale, turn];
+        if self.walking || target != self.target {
+            self.draw();
+        }
+        (self.target, self.expires, self.walking) = (target, expires, false);
+        let from = body.place(now);
+        body.cut(now);
+        self.plan(body, now, from, checked);
+    }
+
+    fn stride(&mut self, body: &mut Body, now: i64, command: Stride, expires: i64, checked: i64) {
+        self.extend(body, now, checked);
+        self.advance(now);
+        self.draw();
+        self.reckoned.1 += command.heading - body.place(now).heading;
+        let (speed, end) =
+            stride::walk(body, now, command, expires, self.model.max_speed, self.factor[0], checked);
+        self.target = [0.0; 3];
+        (self.velocity, self.expires, self.walking) = ([speed, 0.0, 0.0], end, true);
+    }
+
+    fn travel(&self, t: i64) -> Travel {
+        let (_, way) = self.state(t);
+        let (at, heading) = self.reckon(way);
+        Travel::Pose { at, heading }
+    }
+}

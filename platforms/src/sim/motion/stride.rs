@@ -1,0 +1,33 @@
+//! A stride: straight, at constant speed, then rest.
+
+use super::Stride;
+use crate::sim::body::{Body, Piece, seconds};
+
+/// Plans a stride of a robot that turns freely: it faces the heading at once, walks, and rests. Longer
+/// strides than `top_speed` allows fall short; `scale` is the error of the drive. A stride that would go
+/// on beyond `expires` is broken off there.
+///
+/// Returns the commanded speed and when the walking ends.
+pub fn walk(
+    body: &mut Body,
+    now: i64,
+    stride: Stride,
+    expires: i64,
+    top_speed: f64,
+    scale: f64,
+    checked: i64,
+) -> (f64, i64) {
+    let mut from = body.place(now);
+    from.heading = stride.heading;
+    body.cut(now);
+    let end = now.saturating_add(stride.duration).min(expires);
+    let speed = (stride.length / seconds(0, stride.duration)).clamp(-top_speed, top_speed);
+    if end <= now || speed == 0.0 {
+        body.push(Piece::rest(now, from), checked);
+        return (0.0, now);
+    }
+    let piece = Piece::walking(now, end, from, speed * scale);
+    body.push(piece, checked);
+    body.push(piece.then_rest(), checked);
+    (speed, end)
+}
