@@ -1,1 +1,83 @@
-//! .
+//! The mission language: text in, checked behaviour graph and diagnostics out.
+//!
+//! Invariant: no file, clock or terminal is touched here; a [`Loader`] hands over imported texts.
+
+pub mod ast;
+pub mod check;
+pub mod code;
+mod decls;
+mod explain;
+pub mod format;
+mod lower;
+mod modules;
+pub mod parse;
+mod test_case;
+mod typed;
+mod value;
+
+pub use check::verify;
+pub use explain::{Explanation, explain, explanations};
+pub use format::format;
+pub use modules::Loader;
+pub use test_case::TestCase;
+pub use value::parse_value;
+
+use soifra_graph::{Diagnostic, Graph, Severity, span::Source};
+
+/// What came out of checking a file.
+#[derive(Debug)]
+pub struct Checked {
+    /// The graph, when nothing stands in the way of running it.
+    pub graph: Option<Graph>,
+    /// Every finding, by file and position; errors and warnings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Sources that spans refer to.
+    pub sources: Vec<Source>,
+    /// The file's tests.
+    pub tests: Vec<TestCase>,
+}
+
+/// How to check.
+#[derive(Debug, Clone, Default)]
+pub struct CheckOptions {
+    /// Platform for every robot, in place of the one it names.
+    pub platform: Option<String>,
+    /// Which mission, when the program has several; else the root file's first.
+    pub mission: Option<String>,
+}
+
+/// Checks the file `path` with text `text` and everything it imports.
+///
+/// A file without a mission is checked too; it gives no graph, and no error for lacking one: a file of
+/// agents or profiles is not wrong. Running it is refused by the caller.
+pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOptions) -> Checked {
+    let mut program = modules::Program::load(path, text, loader);
+    let mut diagnostics = std::mem::take(&mut program.errors);
+    let decls = decls::Decls::collect(&program, &mut diagnostics);
+    let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    let mut later = Vec::new();
+    let choice = lower::Choice { platform: options.platform.clone(), mission: options.mission.clone() };
+    let mut graph = lower::lower(&program, &decls, &choice, &mut later);
+    if syntax_failed {
+        // Names that an unreadable item would have declared are not the user's second mistake.
+        later.retain(|d| {
+            !matches!(
+                d.code,
+                code::UNKNOWN_NAME | code::UNKNOWN_TYPE | code::UNKNOWN_PLATFORM | code::MISSING_MEMBER
+            )
+        });
+        graph = None;
+    }
+    diagnostics.append(&mut later);
+    let tests = test_case::collect(&decls, &mut diagnostics);
+    if let Some(g) = &graph {
+        diagnostics.extend(verify(g));
+    }
+    diagnostics.sort_by(|a, b| (a.position(), a.code, &a.title).cmp(&(b.position(), b.code, &b.title)));
+    diagnostics.dedup();
+    if diagnostics.iter().any(|d| d.severity == Severity::Error) {
+        graph = None;
+    }
+    let sources = std::mem::take(&mut program.sources);
+    Checked { graph, diagnostics, sources, tests }
+}

@@ -1,0 +1,123 @@
+//! Visits every expression and statement of behaviour.
+
+use soifra_graph::{Agent, Arbiter, Conjunct, Expr, PlanKind, Stmt, StmtKind, Strategy, Unit, UnitKind};
+
+/// Every expression of an agent, parents first.
+pub fn agent<'a>(a: &'a Agent, visit: &mut dyn FnMut(&'a Expr)) {
+    for s in &a.states {
+        s.initial.walk(visit);
+    }
+    for u in &a.units {
+        unit(u, visit);
+    }
+    for x in &a.arbiters {
+        arbiter(x, visit);
+    }
+}
+
+/// Every expression of a unit.
+pub fn unit<'a>(u: &'a Unit, visit: &mut dyn FnMut(&'a Expr)) {
+    for s in statements(u) {
+        expressions_of(s, visit);
+    }
+    match &u.kind {
+        UnitKind::Service(_) => {}
+        UnitKind::Machine(states) => {
+            for t in states.iter().flat_map(|s| &s.transitions) {
+                guard(&t.guard, visit);
+                t.arguments.iter().for_each(|e| e.walk(visit));
+            }
+        }
+        UnitKind::Plan { nodes, .. } => {
+            for n in nodes {
+                match &n.kind {
+                    PlanKind::Timeout(e)
+                    | PlanKind::Check(e)
+                    | PlanKind::Wait(e)
+                    | PlanKind::WaitUntil(e) => e.walk(visit),
+                    PlanKind::Repeat { condition: Some(e), .. } => e.walk(visit),
+                    PlanKind::Act { until, fails, .. } => {
+                        until.iter().chain(fails).for_each(|e| e.walk(visit))
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+}
+
+/// Every expression of an arbiter.
+pub fn arbiter<'a>(a: &'a Arbiter, visit: &mut dyn FnMut(&'a Expr)) {
+    let mut list = Vec::new();
+    a.prelude.iter().for_each(|s| nested(s, &mut list));
+    list.into_iter().for_each(|s| expressions_of(s, visit));
+    match &a.strategy {
+        Strategy::Priority(list) | Strategy::Blend(list) => list.iter().for_each(|e| e.walk(visit)),
+        Strategy::Layers(layers) => {
+            layers.iter().flat_map(|l| l.hold.iter().chain(&l.inhibited)).for_each(|e| e.walk(visit))
+        }
+        Strategy::Switch => {}
+    }
+}
+
+fn guard<'a>(g: &'a [Conjunct], visit: &mut dyn FnMut(&'a Expr)) {
+    for c in g {
+        match c {
+            Conjunct::Holds(e) | Conjunct::Binds(_, e) => e.walk(visit),
+        }
+    }
+}
+
+/// Every statement of a unit, outer ones first.
+pub fn statements(u: &Unit) -> Vec<&Stmt> {
+    let mut out = Vec::new();
+    u.prelude.iter().for_each(|s| nested(s, &mut out));
+    match &u.kind {
+        UnitKind::Service(body) => body.iter().for_each(|s| nested(s, &mut out)),
+        UnitKind::Machine(states) => {
+            for s in states {
+                let blocks =
+                    [&s.entry, &s.body, &s.exit].into_iter().chain(s.transitions.iter().map(|t| &t.body));
+                blocks.flatten().for_each(|s| nested(s, &mut out));
+            }
+        }
+        UnitKind::Plan { nodes, .. } => {
+            for n in nodes {
+                if let PlanKind::Act { prelude, body, halt, .. } = &n.kind {
+                    prelude.iter().chain(body).chain(halt).for_each(|s| nested(s, &mut out));
+                }
+            }
+        }
+    }
+    out
+}
+
+fn nested<'a>(s: &'a Stmt, out: &mut Vec<&'a Stmt>) {
+    out.push(s);
+    match &s.kind {
+        StmtKind::If(_, a, b) => a.iter().chain(b).for_each(|s| nested(s, out)),
+        StmtKind::IfSome { then, otherwise, .. } => then.iter().chain(otherwise).for_each(|s| nested(s, out)),
+        StmtKind::Switch { arms, rest, .. } => {
+            arms.iter().map(|(_, b)| b).chain(rest).flatten().for_each(|s| nested(s, out))
+        }
+        StmtKind::Rules(rules) => rules.iter().flat_map(|r| &r.body).for_each(|s| nested(s, out)),
+        _ => {}
+    }
+}
+
+/// The expressions of a statement itself, without those of the statements in it.
+fn expressions_of<'a>(s: &'a Stmt, visit: &mut dyn FnMut(&'a Expr)) {
+    match &s.kind {
+        StmtKind::Let(_, e)
+        | StmtKind::Set(_, e)
+        | StmtKind::Command(_, e)
+        | StmtKind::Publish(_, e)
+        | StmtKind::SetParam(_, e) => e.walk(visit),
+        StmtKind::Tell { content, .. } => content.walk(visit),
+        StmtKind::Note(_, e) => e.iter().for_each(|e| e.walk(visit)),
+        StmtKind::If(e, _, _) => e.walk(visit),
+        StmtKind::IfSome { value, .. } | StmtKind::Switch { value, .. } => value.walk(visit),
+        StmtKind::Rules(rules) => rules.iter().for_each(|r| guard(&r.guard, visit)),
+        StmtKind::Raise(_) => {}
+    }
+}

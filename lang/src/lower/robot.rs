@@ -1,0 +1,187 @@
+//! Robots and the platforms they are instances of.
+
+use crate::{
+    ast, code,
+    decls::unknown,
+    typed::{Body, Checker, Place},
+};
+use soifra_graph::{
+    AgentBinding, Diagnostic, Dim, Expr, Frame, Name, Op, Own, Platform, RobotGroup, Type,
+    component::PLATFORM_ROLES,
+};
+use std::collections::BTreeMap;
+
+impl<'a> Checker<'a> {
+    /// Lowers a platform profile by name, once.
+    pub fn platform(&mut self, name: &ast::Ident, done: &mut Vec<Platform>) -> Option<u32> {
+        if let Some(i) = done.iter().position(|p| p.name == name.name) {
+            return Some(i as u32);
+        }
+        let Some(profile) = self.decls.platforms.get(&name.name).copied() else {
+            let d = unknown(
+                code::UNKNOWN_PLATFORM,
+                "platform",
+                &name.name,
+                name.span,
+                self.decls.platforms.keys().map(|k| &**k),
+            );
+            self.report(d);
+            return None;
+        };
+        let p = self.profile(profile);
+        done.push(p);
+        Some((done.len() - 1) as u32)
+    }
+
+    /// Lowers a profile.
+    pub fn profile(&mut self, profile: &'a ast::Profile) -> Platform {
+        let entries = self.extended(profile, false);
+        let components = entries.into_iter().filter_map(|e| self.component(e, PLATFORM_ROLES)).collect();
+        Platform { name: profile.name.name.clone(), components, at: profile.name.span }
+    }
+
+    /// Lowers a robot; `platform` replaces the one it names.
+    pub fn robot(
+        &mut self,
+        r: &'a ast::Robot,
+        platform: Option<&ast::Ident>,
+        agents: &BTreeMap<Name, u32>,
+        done: &mut Vec<Platform>,
+    ) -> Option<RobotGroup> {
+        let count = match &r.count {
+            Some(c) => Some(self.in_body(Body::new(Place::Start), |s| s.typed(c, &Type::Int)).0?),
+            None => None,
+        };
+        let chosen = platform.or_else(|| r.platforms.first())?;
+        let index = self.platform(chosen, done);
+        for other in &r.platforms {
+            if other.name != chosen.name && !self.decls.platforms.contains_key(&other.name) {
+                let d = unknown(
+                    code::UNKNOWN_PLATFORM,
+                    "platform",
+                    &other.name,
+                    other.span,
+                    self.decls.platforms.keys().map(|k| &**k),
+                );
+                self.report(d);
+            }
+        }
+        let at = ast::Ident { name: "index".into(), span: r.name.span };
+        let scene = |c: &mut Self, f: &mut dyn FnMut(&mut Self) -> Option<Expr>| {
+            let mut body = Body::new(Place::Scene);
+            if r.count.is_some() {
+                body.bind(&at, &Type::Int);
+            } else {
+                // Local 0 is the index in every scene expression; a single robot has no name for it.
+                body.local(&Type::Int);
+            }
+            c.in_body(body, |c| f(c)).0
+        };
+        let start = scene(self, &mut |c| c.start_pose(&r.at));
+        let target = match &r.target {
+            Some(t) => Some(scene(self, &mut |c| c.typed(t, &Type::Point(Frame::map())))?),
+            None => None,
+        };
+        let scatter = match &r.scatter {
+            Some(s) => Some(scene(self, &mut |c| c.typed(s, &Type::Distribution(Dim::LENGTH)))?),
+            None => None,
+        };
+        let mut bindings = Vec::new();
+        for (agent, args) in &r.runs {
+            let Some(i) = agents.get(&agent.name) else {
+                let d = unknown(
+                    code::UNKNOWN_NAME,
+                    "agent",
+                    &agent.name,
+                    agent.span,
+                    agents.keys().map(|k| &**k),
+                );
+                self.report(d);
+                continue;
+            };
+            if let Some(first) = bindings.iter().find(|b: &&AgentBinding| b.agent == *i) {
+                self.report(
+                    Diagnostic::error(
+                        code::EXCLUSIVE,
+                        format!("`{}` runs `{}` twice", r.name.name, agent.name),
+                    )
+                    .at(agent.span, "the second")
+                    .at(first.at, "the first")
+                    .hint("an agent runs once on a robot; give the second another agent"),
+                );
+                continue;
+            }
+            let params = self.agents[*i as usize].parameters.clone();
+            let mut arguments = None;
+            scene(self, &mut |c| {
+                arguments = c.arguments(agent, &params, args, agent.span);
+                None
+            });
+            bindings.push(AgentBinding { agent: *i, arguments: arguments?, at: agent.span });
+        }
+        Some(RobotGroup {
+            name: r.name.name.clone(),
+            count,
+            platform: index?,
+            alternatives: r
+                .platforms
+                .iter()
+                .filter(|p| p.name != chosen.name)
+                .map(|p| p.name.clone())
+                .collect(),
+            start: start?,
+            scatter,
+            target,
+            agents: bindings,
+            at: r.name.span,
+        })
+    }
+
+    /// A pose, or a point with the heading to the east.
+    fn start_pose(&mut self, e: &ast::Expr) -> Option<Expr> {
+        let pose = Type::Pose(Frame::map());
+        let value = self.expr(e, Some(&pose))?;
+        if value.ty == Type::Point(Frame::map()) {
+            let span = value.span;
+            let east = Expr::constant(soifra_graph::Value::Number(0.0), Type::Heading(Frame::map()), span);
+            return Some(Expr::new(
+                Op::Builtin(soifra_graph::Function::PoseAt),
+                vec![value, east],
+                pose,
+                span,
+            ));
+        }
+        self.coerce(value, &pose)
+    }
+
+    /// The robot's target must exist where something asks for it.
+    pub fn needs_target(&mut self, robots: &[RobotGroup]) {
+        let mut asked = None;
+        let mut look = |e: &Expr| {
+            if e.op == Op::Own(Own::Target) && asked.is_none() {
+                asked = Some(e.span);
+            }
+        };
+        for a in &self.agents {
+            crate::check::walk::agent(a, &mut look);
+        }
+        let Some(at) = asked else { return };
+        for r in robots.iter().filter(|r| r.target.is_none()) {
+            let runs = r.agents.iter().any(|b| {
+                let mut uses = false;
+                if let Some(a) = self.agents.get(b.agent as usize) {
+                    crate::check::walk::agent(a, &mut |e| uses |= e.op == Op::Own(Own::Target));
+                }
+                uses
+            });
+            if runs {
+                self.errors.push(
+                    Diagnostic::error(code::MISSING_MEMBER, format!("`{}` has no target", r.name))
+                        .at(r.at, "no `to` here")
+                        .at(at, "asked for here")
+                        .hint("write where it is going: `at START to TARGET`"),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! pest's errors in the words of someone who writes missions.
+
+use super::Rule;
+use crate::code;
+use pest::error::{Error, ErrorVariant, InputLocation};
+use soifra_graph::{Diagnostic, Span, did_you_mean};
+
+/// The diagnostic for a syntax error in `text`, which starts at byte `at` of source `file`.
+pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
+    let from = match e.location {
+        InputLocation::Pos(p) => p,
+        InputLocation::Span((a, _)) => a,
+    };
+    let from = skip_blank(text, from.min(text.len()));
+    let found = &text[from..];
+    let len = word_length(found);
+    let expected = expected(e);
+    let title = if found.trim().is_empty() {
+        "the text ends in the middle of something".to_string()
+    } else {
+        format!("`{}` cannot stand here", &found[..len])
+    };
+    let label = match expected.as_slice() {
+        [] => "unexpected".to_string(),
+        [one] => format!("expected {one}"),
+        [init @ .., last] => format!("expected {} or {last}", init.join(", ")),
+    };
+    let (start, end) = if found.trim().is_empty() {
+        let end = text.trim_end().len();
+        (text[..end].char_indices().next_back().map_or(0, |(i, _)| i), end)
+    } else {
+        (from, from + len)
+    };
+    let d = Diagnostic::error(code::SYNTAX, title).at(Span::new(file, at + start, at + end), label);
+    match did_you_mean(&found[..len], expected.iter().map(|s| s.trim_matches('`'))) {
+        Some(near) => d.hint(format!("did you mean `{near}`?")),
+        None => d.hint("see the construct's grammar in docs/language.md, or `soifra explain S0101`"),
+    }
+}
+
+fn skip_blank(text: &str, mut from: usize) -> usize {
+    while !text.is_char_boundary(from) {
+        from -= 1;
+    }
+    from + (text[from..].len() - text[from..].trim_start().len())
+}
+
+/// Length of the word, or the single character, that `s` begins with.
+fn word_length(s: &str) -> usize {
+    let word = s.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(s.len());
+    if word > 0 { word.min(64) } else { s.chars().next().map_or(0, char::len_utf8) }
+}
+
+/// What could have stood there, as words; at most eight, most telling first.
+fn expected(e: &Error<Rule>) -> Vec<String> {
+    let ErrorVariant::ParsingError { positives, .. } = &e.variant else { return Vec::new() };
+    let mut words: Vec<String> = Vec::new();
+    for rule in positives {
+        let word = match rule {
+            Rule::COMMENT | Rule::EOI | Rule::junk => continue,
+            Rule::operand | Rule::expr | Rule::primary | Rule::tuple | Rule::list => "a value".to_string(),
+            Rule::prefix | Rule::is_test => continue,
+            Rule::infix => "an operator".into(),
+            Rule::postfix | Rule::args => continue,
+            Rule::ident | Rule::path => "a name".into(),
+            Rule::string => "a text in quotes".into(),
+            Rule::int | Rule::number | Rule::quantity => "a number".into(),
+            Rule::unit => "a unit".into(),
+            Rule::type_ref | Rule::type_name | Rule::inline_enum | Rule::service_type => "a type".into(),
+            Rule::stmt | Rule::body | Rule::block => "a statement".into(),
+            Rule::entry => "an entry like `role name = model(…)`".into(),
+            Rule::item | Rule::mission => "an item such as `mission` or `agent`".into(),
+            r => {
+                let name = format!("{r:?}");
+                match name.strip_prefix("K_") {
+                    Some(k) => format!("`{}`", k.to_lowercase()),
+                    None => name.split('_').next().unwrap_or_default().to_string(),
+                }
+            }
+        };
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words.sort_by_key(|w| w.starts_with('`'));
+    words.truncate(8);
+    words
+}

@@ -1,0 +1,141 @@
+//! Text to syntax tree. The grammar is `grammar.pest`; errors recover at the next item.
+
+mod behaviour;
+mod cursor;
+mod expr;
+mod items;
+mod message;
+mod nesting;
+
+use crate::{ast, code};
+use pest::Parser as _;
+use soifra_graph::{Diagnostic, Span};
+
+use grammar::{Grammar, Rule};
+
+#[allow(missing_docs, reason = "generated from the grammar, 2026-11")]
+mod grammar {
+    #[derive(pest_derive::Parser)]
+    #[grammar = "grammar.pest"]
+    pub struct Grammar;
+}
+
+pub(crate) use cursor::Cursor;
+
+/// Deepest nesting of brackets a source may have.
+pub const MAX_NESTING: usize = 256;
+/// Longest identifier, in bytes.
+pub const MAX_IDENT: usize = 255;
+/// Longest chain of operators in one expression.
+pub const MAX_CHAIN: usize = 256;
+
+/// What the builders share: the file they build and the errors they found.
+pub(crate) struct Builder {
+    pub file: u32,
+    pub errors: Vec<Diagnostic>,
+}
+
+/// Parses source number `file`: the tree of everything readable, and all errors.
+pub fn parse(file: u32, text: &str) -> (ast::File, Vec<Diagnostic>) {
+    let mut b = Builder { file, errors: Vec::new() };
+    let mut tree = ast::File::default();
+    if let Err(at) = nesting::check(text) {
+        let d = Diagnostic::error(code::NESTING, format!("brackets nest deeper than {MAX_NESTING}"));
+        b.errors.push(
+            d.at(Span::new(file, at, at + 1), "the bracket that is too many")
+                .hint("give inner parts names with `let`, or move them into functions"),
+        );
+        return (tree, b.errors);
+    }
+    match Grammar::parse(Rule::file, text) {
+        Ok(mut pairs) => {
+            if let Some(root) = pairs.next() {
+                b.file(root, &mut tree);
+            }
+        }
+        Err(e) => b.errors.push(message::syntax(file, 0, text, &e)),
+    }
+    (tree, b.errors)
+}
+
+impl Builder {
+    fn file(&mut self, root: pest::iterators::Pair<'_, Rule>, tree: &mut ast::File) {
+        for pair in root.into_inner() {
+            match pair.as_rule() {
+                Rule::edition => {
+                    let span = self.span(&pair);
+                    let mut c = Cursor::new(pair);
+                    let n = self.int(&mut c);
+                    tree.edition = Some((n, span));
+                }
+                Rule::import => tree.imports.push(self.import(pair)),
+                Rule::item => {
+                    if let Some(inner) = pair.into_inner().find(|p| p.as_rule() != Rule::COMMENT) {
+                        if let Some(item) = self.item(inner) {
+                            tree.items.push(item);
+                        }
+                    }
+                }
+                Rule::junk => self.junk(&pair),
+                _ => {}
+            }
+        }
+    }
+
+    /// Something between items that is none: parsed again by itself, for pest's own error.
+    fn junk(&mut self, pair: &pest::iterators::Pair<'_, Rule>) {
+        let (text, at) = (pair.as_str(), pair.as_span().start());
+        let e = match Grammar::parse(Rule::item_alone, text) {
+            Err(e) => message::syntax(self.file, at, text, &e),
+            // Readable alone but not where it stands: an edition or import after the items, say.
+            Ok(_) => Diagnostic::error(code::SYNTAX, "this cannot stand here")
+                .at(Span::new(self.file, at, at + text.trim_end().len().min(40)), "unexpected here"),
+        };
+        self.errors.push(e);
+    }
+
+    pub fn span(&self, pair: &pest::iterators::Pair<'_, Rule>) -> Span {
+        let s = pair.as_span();
+        Span::new(self.file, s.start(), s.start() + s.as_str().trim_end().len())
+    }
+
+    pub fn ident(&mut self, c: &mut Cursor<'_>) -> ast::Ident {
+        match c.take(Rule::ident) {
+            Some(p) => self.name(&p),
+            None => ast::Ident { name: "?".into(), span: Span::new(self.file, 0, 0) },
+        }
+    }
+
+    pub fn name(&mut self, p: &pest::iterators::Pair<'_, Rule>) -> ast::Ident {
+        let (span, text) = (self.span(p), p.as_str());
+        if text.len() > MAX_IDENT {
+            self.errors.push(
+                Diagnostic::error(code::LONG_NAME, format!("a name of {} bytes is too long", text.len()))
+                    .at(
+                        Span { end: span.start + 32, ..span },
+                        format!("names have at most {MAX_IDENT} bytes"),
+                    )
+                    .hint("choose a shorter name"),
+            );
+            return ast::Ident { name: text[..32].into(), span };
+        }
+        ast::Ident { name: text.into(), span }
+    }
+
+    pub fn int(&mut self, c: &mut Cursor<'_>) -> i64 {
+        let Some(p) = c.take(Rule::int) else { return 0 };
+        p.as_str().parse().ok().filter(|n: &i64| *n <= 1 << 53).unwrap_or_else(|| {
+            self.errors.push(
+                Diagnostic::error(code::NUMBER_RANGE, "this number is too large")
+                    .at(self.span(&p), "whole numbers go to 9007199254740992")
+                    .hint("write a smaller number"),
+            );
+            0
+        })
+    }
+}
+
+/// The text of a string literal without its quotes.
+pub(crate) fn unquote(s: &str) -> String {
+    s.trim_matches('"').to_string()
+}
