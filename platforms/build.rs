@@ -7,7 +7,8 @@ use std::{
 };
 
 fn main() -> Result<()> {
-    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or_else(|| Error::other("no manifest dir"))?);
+    let root =
+        PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").ok_or_else(|| Error::other("no manifest dir"))?);
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or_else(|| Error::other("no output dir"))?);
     let mut files = Vec::new();
     for folder in ["profiles", "worlds"] {

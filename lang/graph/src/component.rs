@@ -114,8 +114,8 @@ const TABLE: &[(&str, &str, &str)] = &[
     ),
     (
         "mover",
-        "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, material: Text = \"plaster\")",
-        "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds and by keep-out regions",
+        "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, keep_out: Length? = none, material: Text = \"plaster\")",
+        "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds; given `keep_out`, its rim stays that far from every robot's start and target",
     ),
     (
         "material",

@@ -54,7 +54,11 @@ impl<'a> Args<'a> {
     /// A chance, 0 to 1.
     pub fn chance(&self, name: &str) -> Result<f64, String> {
         let x = self.number(name)?;
-        if (0.0..=1.0).contains(&x) { Ok(x) } else { Err(self.wrong(format_args!("`{name}` is no chance between 0 and 1"))) }
+        if (0.0..=1.0).contains(&x) {
+            Ok(x)
+        } else {
+            Err(self.wrong(format_args!("`{name}` is no chance between 0 and 1")))
+        }
     }
 
     /// Whether an optional argument was given.

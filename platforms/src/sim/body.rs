@@ -123,7 +123,14 @@ pub struct Body {
 
 impl Body {
     /// A body that stands still.
-    pub fn new(name: String, radius: f64, span: [f64; 2], top_speed: f64, reflectance: f64, at: Place) -> Body {
+    pub fn new(
+        name: String,
+        radius: f64,
+        span: [f64; 2],
+        top_speed: f64,
+        reflectance: f64,
+        at: Place,
+    ) -> Body {
         // Pieces end at whole nanoseconds, which may make one a little faster than its drive.
         let top_speed = top_speed * 1.0001;
         Body { name, radius, span, top_speed, reflectance, pieces: vec![Piece::rest(0, at)] }

@@ -169,9 +169,7 @@ impl Collisions {
     fn report(&mut self, pair: &Pair, bodies: &[Body], things: &Things, at: i64, begin: bool) {
         let (robot, at) = (pair.robot, Time(at));
         let (other, with) = match pair.other {
-            Other::Body(o) => {
-                ((o < self.robots as u32).then_some(o), bodies[o as usize].name.clone())
-            }
+            Other::Body(o) => ((o < self.robots as u32).then_some(o), bodies[o as usize].name.clone()),
             Other::Thing(o) => (None, things.all[o as usize].name.clone()),
         };
         for r in [Some(robot), other].into_iter().flatten() {
@@ -312,7 +310,9 @@ fn stretches(a: &[Piece], b: &[Piece], from: i64, to: i64, mut f: impl FnMut(Str
     while i < a.len() && j < b.len() {
         let (p, q) = (&a[i], &b[j]);
         let (start, end) = (p.start.max(q.start), p.end.min(q.end));
-        if start <= end && let Some(s) = Stretch::new(start, end, from, to) {
+        if start <= end
+            && let Some(s) = Stretch::new(start, end, from, to)
+        {
             f(s, p, q);
         }
         if start > to {

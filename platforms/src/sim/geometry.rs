@@ -58,7 +58,10 @@ impl Aabb {
 
     /// Whether two share a point.
     pub fn meets(&self, o: &Aabb) -> bool {
-        self.low[0] <= o.high[0] && o.low[0] <= self.high[0] && self.low[1] <= o.high[1] && o.low[1] <= self.high[1]
+        self.low[0] <= o.high[0]
+            && o.low[0] <= self.high[0]
+            && self.low[1] <= o.high[1]
+            && o.low[1] <= self.high[1]
     }
 }
 
@@ -158,7 +161,10 @@ impl Shape {
                 if radius > 0.0 {
                     all = joined(all, slab(p, v, [half[0], half[1] + radius]));
                     for corner in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
-                        all = joined(all, within(sub(p, [corner[0] * half[0], corner[1] * half[1]]), v, radius));
+                        all = joined(
+                            all,
+                            within(sub(p, [corner[0] * half[0], corner[1] * half[1]]), v, radius),
+                        );
                     }
                 }
                 all

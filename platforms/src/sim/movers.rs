@@ -72,7 +72,8 @@ impl ToAndFro {
         if speed > 0.0 && length / speed < SHORTEST as f64 * 1e-9 {
             return Err(args.wrong("the whole path takes less than 0.1 ms"));
         }
-        let mut mover = ToAndFro { points, upto, speed, offset: (phase - phase.floor()) * 2.0 * length, next: 1 };
+        let mut mover =
+            ToAndFro { points, upto, speed, offset: (phase - phase.floor()) * 2.0 * length, next: 1 };
         while mover.distance(mover.next) <= mover.offset {
             mover.next += 1;
         }

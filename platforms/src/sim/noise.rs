@@ -3,7 +3,10 @@
 //! A source (`scout/ir`, `mover/block[1]`) has a stream of its own, so that adding a sensor or a robot
 //! leaves the numbers of all others as they were.
 
-use rand_chacha::{ChaCha8Rng, rand_core::{Rng, SeedableRng}};
+use rand_chacha::{
+    ChaCha8Rng,
+    rand_core::{Rng, SeedableRng},
+};
 use soifra_graph::Distribution;
 
 /// The stream of one source. About 330 bytes.

@@ -76,7 +76,10 @@ pub fn things(scene: &Scene) -> Result<Things, String> {
             ("wall", "segment") => wall(args)?,
             ("obstacle", "cylinder") => {
                 let [x, y, z] = args.vector("at")?;
-                (Shape::Disc { at: [x, y], radius: args.positive("radius")? }, [z, z + args.positive("height")?])
+                (
+                    Shape::Disc { at: [x, y], radius: args.positive("radius")? },
+                    [z, z + args.positive("height")?],
+                )
             }
             ("obstacle", "box") => {
                 let ([x, y, z], size) = (args.vector("at")?, args.vector("size")?);
@@ -146,7 +149,9 @@ pub fn actuators(scene: &Scene, chassis: &[Chassis]) -> Result<Vec<Vec<Actuator>
             let args = Args { part, of: &of };
             match &*part.model {
                 "twist" => Ok(Actuator::Twist),
-                "strides" if chassis.drive.strides() => Ok(Actuator::Strides { duration: args.period("duration")?.0 }),
+                "strides" if chassis.drive.strides() => {
+                    Ok(Actuator::Strides { duration: args.period("duration")?.0 })
+                }
                 "strides" => Err(args.wrong("a stride needs a drive that moves in any direction")),
                 _ => Err(args.wrong("the simulator has no such actuator")),
             }

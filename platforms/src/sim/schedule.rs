@@ -118,7 +118,8 @@ impl Schedule {
             {
                 let delivered = Time(flight.captured.saturating_add(group.latency));
                 let width = flight.registers.len() / group.robots.len();
-                for (robot, registers) in group.robots.iter().zip(flight.registers.chunks_exact(width.max(1))) {
+                for (robot, registers) in group.robots.iter().zip(flight.registers.chunks_exact(width.max(1)))
+                {
                     readings.push(*robot, group.index, Time(flight.captured), delivered, registers);
                 }
                 group.spare.push(flight.registers);

@@ -124,7 +124,9 @@ impl Differential {
         let turning = if rate.abs() < NO_TURN { 0.0 } else { rate.signum() };
         if turning != self.turning {
             self.turning = turning;
-            if turning != 0.0 && let Some(noise) = &mut self.noise {
+            if turning != 0.0
+                && let Some(noise) = &mut self.noise
+            {
                 self.turn_factor = noise.factor(self.model.rotation_error);
             }
         }

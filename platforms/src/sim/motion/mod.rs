@@ -116,4 +116,3 @@ fn span(from: i64, to: i64) -> f64 {
 fn stream(needed: bool, seed: u64, source: &str) -> Option<Box<Stream>> {
     needed.then(|| Box::new(Stream::new(seed, source)))
 }
-

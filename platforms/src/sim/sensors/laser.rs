@@ -57,13 +57,15 @@ impl Laser {
     /// from the middle of the shape and its farthest rim to both sides.
     fn cast(&mut self, shape: &Shape, at: Vec2, ahead: Vec2) {
         let n = self.bearings.len();
-        let Some((middle, half)) = angle_of(shape, at, ahead) else { return self.try_beams(shape, at, ahead, 0, n) };
+        let Some((middle, half)) = angle_of(shape, at, ahead) else {
+            return self.try_beams(shape, at, ahead, 0, n);
+        };
         if self.step == 0.0 {
             return self.try_beams(shape, at, ahead, 0, n);
         }
-        // The middle as an angle past the first beam, and the same a turn earlier.
+        // The middle as an angle past the first beam, and the same a turn earlier and later.
         let past = (middle - self.first).rem_euclid(TAU);
-        for past in [past - TAU, past] {
+        for past in [past - TAU, past, past + TAU] {
             let from = ((past - half) / self.step - 1e-6).ceil().max(0.0);
             let to = ((past + half) / self.step + 1e-6).floor().min(n as f64 - 1.0);
             if from <= to {

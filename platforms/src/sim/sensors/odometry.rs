@@ -30,7 +30,11 @@ impl Odometry {
     /// From `odometry(…)`.
     pub fn new(mount: Mount<'_>) -> Result<Odometry, String> {
         let (pulse, period) = (mount.args.positive("pulse")?, mount.args.period("period")?);
-        Ok(Odometry { pulse, period: period.seconds(), seats: vec![Reckoning::default(); mount.robots.len()] })
+        Ok(Odometry {
+            pulse,
+            period: period.seconds(),
+            seats: vec![Reckoning::default(); mount.robots.len()],
+        })
     }
 }
 

@@ -62,7 +62,8 @@ impl Sensor for Ultrasonic {
         for &(bearing, dir) in &self.bearings {
             let dir = turned(dir, ahead[0], ahead[1]);
             let origin = along(at, dir, self.rim);
-            let echoes = self.seen.iter().filter_map(|s| s.shape.in_cone(origin, dir, self.half[0], self.half[1]));
+            let echoes =
+                self.seen.iter().filter_map(|s| s.shape.in_cone(origin, dir, self.half[0], self.half[1]));
             let nearest = echoes.reduce(f64::min).filter(|d| *d <= self.range.1);
             let reads = nearest.map(|d| d + draw(&mut self.streams, seat, self.noise));
             beam(out, bearing, reads, self.range);

@@ -1,0 +1,12 @@
+//! The simulator against closed forms, analytic geometry and itself.
+
+mod contacts;
+mod kinematics;
+mod library;
+mod movers;
+mod noise;
+mod refused;
+mod scenes;
+mod schedule;
+mod sensors;
+mod swarm;
