@@ -1,0 +1,194 @@
+//! What is in the picture: the world, the robots, the movers, the contacts.
+
+use super::{
+    Scene,
+    drawing::{Color, Drawing, Style, faint, filled, ink, stroked},
+    frame::{DARK, MILD},
+    tracks::simplify,
+};
+use crate::trace_file::{
+    Header, palette,
+    shape::{self, Shape},
+};
+
+const WALL: Color = [62, 67, 77];
+const OBSTACLE: Color = [168, 175, 186];
+const REGION: Color = [46, 160, 87];
+const MOVER: Color = [140, 148, 160];
+const CONTACT: Color = [214, 18, 32];
+const WHITE: Color = [255, 255, 255];
+const OUTSIDE: Color = [240, 242, 245];
+
+/// Paths are drawn to a fifth of a point.
+const TOLERANCE: f64 = 0.2;
+/// Up to so many places of a path are marked by dots: they are steps.
+const STEPS: usize = 120;
+
+/// Corners of a box, counter-clockwise; none of another shape.
+pub(super) fn corners(shape: &Shape) -> Vec<[f64; 2]> {
+    let Shape::Box { at, size, heading } = shape else { return Vec::new() };
+    let (sin, cos) = (libm::sin(*heading), libm::cos(*heading));
+    [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+        .map(|(u, v)| (u * size[0], v * size[1]))
+        .map(|(u, v)| [at[0] + u * cos - v * sin, at[1] + u * sin + v * cos])
+        .to_vec()
+}
+
+/// Radius of a mover in metres.
+pub(super) fn mover_radius(header: &Header, name: &str) -> f64 {
+    let part = header.scene.world.iter().find(|p| &*p.role == "mover" && p.name == name);
+    part.and_then(shape::mover_body).map_or(0.0, |b| b.radius)
+}
+
+pub(super) fn region_style() -> Style {
+    filled(faint(REGION, 0.14)).outline(faint(REGION, 0.9), 1.2).dashed(4.0)
+}
+
+pub(super) fn obstacle_style() -> Style {
+    filled(ink(OBSTACLE)).outline(ink(WALL), 1.2)
+}
+
+pub(super) fn wall_style() -> Style {
+    filled(ink(WALL)).outline(ink(WALL), 1.2)
+}
+
+pub(super) fn mover_style() -> Style {
+    filled(faint(MOVER, 0.45)).outline(ink(MILD), 1.2)
+}
+
+pub(super) fn mover_track_style() -> Style {
+    Style::default().outline(faint(MOVER, 0.6), 1.6).dashed(5.0)
+}
+
+fn add(drawing: &mut Drawing, scene: &Scene, shape: &Shape, style: Style) {
+    let view = &scene.view;
+    match shape {
+        // Never smaller than can be seen.
+        Shape::Cylinder { at, radius, .. } => {
+            drawing.circle(view.place([at[0], at[1]]), f64::max(radius.abs() * view.scale, 1.5), style);
+        }
+        Shape::Box { .. } => {
+            let corners: Vec<_> = corners(shape).into_iter().map(|c| view.place(c)).collect();
+            drawing.polygon(&corners, style);
+        }
+    }
+}
+
+/// The ground: the bounds are white, what lies outside is grey.
+pub(super) fn ground(drawing: &mut Drawing, scene: &Scene) {
+    let bounds: Vec<Shape> =
+        scene.header.scene.world.iter().filter(|p| &*p.role == "bounds").filter_map(shape::of_part).collect();
+    let outside = if bounds.is_empty() { WHITE } else { OUTSIDE };
+    drawing.rectangle(scene.view.origin, scene.view.size(), filled(ink(outside)));
+    for shape in &bounds {
+        add(drawing, scene, shape, filled(ink(WHITE)).outline(faint(MILD, 0.6), 0.8));
+    }
+}
+
+/// Regions below, then obstacles and walls.
+pub(super) fn things(drawing: &mut Drawing, scene: &Scene) {
+    for (role, style) in [("region", region_style()), ("obstacle", obstacle_style()), ("wall", wall_style())]
+    {
+        for part in scene.header.scene.world.iter().filter(|p| &*p.role == role) {
+            if let Some(shape) = shape::of_part(part) {
+                add(drawing, scene, &shape, style);
+            }
+        }
+    }
+}
+
+pub(super) fn movers(drawing: &mut Drawing, scene: &Scene) {
+    for track in scene.tracks.movers.values() {
+        let places: Vec<_> = track.points.iter().map(|(_, p)| scene.view.place(*p)).collect();
+        drawing.line(&simplify(&places, TOLERANCE), mover_track_style());
+    }
+    for (name, track) in &scene.tracks.movers {
+        if let Some(end) = track.end() {
+            let radius = f64::max(mover_radius(scene.header, name) * scene.view.scale, 2.5);
+            drawing.circle(scene.view.place(end), radius, mover_style());
+        }
+    }
+}
+
+/// Paths below, then starts, bodies and targets.
+pub(super) fn robots(drawing: &mut Drawing, scene: &Scene) {
+    let (view, robots) = (&scene.view, &scene.header.scene.robots);
+    for (i, track) in &scene.tracks.robots {
+        let color = palette::robot(*i);
+        let mut places: Vec<_> = track.points.iter().map(|(_, p)| view.place(*p)).collect();
+        drawing.line(&simplify(&places, TOLERANCE), path_style(color));
+        places.dedup();
+        if places.len() <= STEPS {
+            // Dots that run into each other say nothing.
+            let mut last = None;
+            for p in places {
+                if last.is_none_or(|q: [f64; 2]| libm::hypot(p[0] - q[0], p[1] - q[1]) > 6.0) {
+                    drawing.circle(p, 2.1, filled(ink(color)));
+                    last = Some(p);
+                }
+            }
+        }
+    }
+    for (i, robot) in robots.iter().enumerate() {
+        let track = scene.tracks.robots.get(&i);
+        let first = track.and_then(|t| t.points.first()).map_or([robot.start[0], robot.start[1]], |p| p.1);
+        let color = palette::robot(i);
+        start(drawing, view.place(first), color);
+        if let Some((track, end)) = track.and_then(|t| Some((t, t.end()?))) {
+            let radius = f64::max(shape::robot_body(&scene.header.scene, i).radius * view.scale, 4.0);
+            body(drawing, view.place(end), radius, track.heading, color);
+        }
+    }
+    for (i, robot) in robots.iter().enumerate() {
+        if let Some(t) = robot.target {
+            target(drawing, view.place([t[0], t[1]]), palette::robot(i));
+        }
+    }
+}
+
+pub(super) fn path_style(color: Color) -> Style {
+    stroked(color, 1.9)
+}
+
+/// A ring.
+pub(super) fn start(drawing: &mut Drawing, at: [f64; 2], color: Color) {
+    drawing.circle(at, 4.6, filled(ink(WHITE)).outline(ink(color), 2.0));
+}
+
+/// A disc with a tick to where it faces.
+pub(super) fn body(drawing: &mut Drawing, at: [f64; 2], radius: f64, heading: f64, color: Color) {
+    drawing.circle(at, radius, filled(faint(color, 0.35)).outline(ink(color), 1.6));
+    let rim = [at[0] + radius * libm::cos(heading), at[1] - radius * libm::sin(heading)];
+    drawing.line(&[at, rim], stroked(DARK, 1.8));
+}
+
+/// An upright cross.
+pub(super) fn target(drawing: &mut Drawing, [x, y]: [f64; 2], color: Color) {
+    for (style, reach) in [(stroked(WHITE, 4.4), 6.5), (stroked(color, 2.0), 6.5)] {
+        drawing.line(&[[x - reach, y], [x + reach, y]], style);
+        drawing.line(&[[x, y - reach], [x, y + reach]], style);
+    }
+}
+
+pub(super) fn contacts(drawing: &mut Drawing, scene: &Scene) {
+    let mut places: Vec<[f64; 2]> = Vec::new();
+    for (t, robot) in &scene.tracks.contacts {
+        let at = scene.tracks.robots.get(robot).and_then(|track| track.at(*t));
+        let Some(at) = at.map(|p| scene.view.place(p)) else { continue };
+        // Two robots that touch each other many times over are one mark.
+        if !places.iter().rev().take(64).any(|p| libm::hypot(p[0] - at[0], p[1] - at[1]) < 2.0) {
+            contact(drawing, at);
+            places.push(at);
+        }
+    }
+}
+
+/// A red cross in a ring.
+pub(super) fn contact(drawing: &mut Drawing, [x, y]: [f64; 2]) {
+    let r = 4.2;
+    for style in [stroked(WHITE, 4.6), stroked(CONTACT, 2.2)] {
+        drawing.circle([x, y], 7.2, style);
+        drawing.line(&[[x - r, y - r], [x + r, y + r]], style);
+        drawing.line(&[[x - r, y + r], [x + r, y - r]], style);
+    }
+}
