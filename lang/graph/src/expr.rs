@@ -278,6 +278,37 @@ impl Expr {
         }
     }
 
+    /// Types of the locals this expression binds by itself, numbered from 0; `known` are given from
+    /// outside. Locals above 65,535 are not looked for: what uses them is refused when compiled.
+    pub fn local_types(&self, known: &[Type]) -> Vec<Type> {
+        let mut types = known.to_vec();
+        let mut bind = |local: u32, ty: &Type| {
+            let l = local as usize;
+            if (known.len()..1 << 16).contains(&l) {
+                if types.len() <= l {
+                    types.resize(l + 1, Type::Bool);
+                }
+                types[l] = ty.clone();
+            }
+        };
+        self.walk(&mut |e| match (&e.op, e.args.first().map(|a| &a.ty)) {
+            (Op::Let(l), Some(t)) => bind(*l, t),
+            (Op::IfSome { local, reason }, Some(Type::Option(t))) => {
+                bind(*local, t);
+                if let Some(r) = reason {
+                    bind(*r, &Type::Text);
+                }
+            }
+            (Op::List(_, l), Some(Type::List(t, _))) => bind(*l, t),
+            (Op::Fold(accumulator, item), Some(Type::List(t, _))) => {
+                bind(*item, t);
+                bind(*accumulator, &e.ty);
+            }
+            _ => {}
+        });
+        types
+    }
+
     /// The constant value, when this is one.
     pub fn as_const(&self) -> Option<&Value> {
         match &self.op {
