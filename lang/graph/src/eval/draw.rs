@@ -25,7 +25,7 @@ pub fn sample(from: Distribution, next: &mut impl FnMut() -> u64) -> f64 {
         Distribution::Skewed(best, mean, worst) => {
             let u = unit(next());
             let m = (mean - best) / (worst - best);
-            if !(m > 0.0) {
+            if m.is_nan() || m <= 0.0 {
                 return best;
             }
             if m >= 1.0 {

@@ -9,13 +9,25 @@
 //! Invariant: no graph, however malformed, makes the compiler or the machine panic: it is refused with
 //! a [`CompileError`] or ends in a [`Fault`]. Numbers in registers are finite.
 
+mod builtins;
+mod code;
 mod compile;
+mod compile_call;
+mod compile_expr;
+mod compile_list;
+mod compile_ops;
+mod compile_stmt;
 mod constant;
 mod draw;
 mod env;
 mod fault;
+mod geometry;
+mod lists;
 mod memory;
+mod run;
+mod widths;
 
+pub use code::Program;
 pub use compile::{Block, Compiler, Scope};
 pub use constant::{Known, constant};
 pub use draw::sample;
@@ -28,25 +40,3 @@ pub const MAX_ROBOTS: u32 = 1 << 20;
 
 /// The greatest number of registers a frame may need.
 pub const MAX_FRAME: usize = 1 << 22;
-
-/// Compiled blocks and functions; immutable, shared freely between threads.
-#[derive(Debug, Clone, Default)]
-pub struct Program {}
-
-impl Program {
-    /// Runs a block. `frame` has at least [`Block::frame`] registers; blocks of one scope are given the
-    /// same frame. The result is in `frame[block.result..][..block.width]`.
-    ///
-    /// # Errors
-    /// A [`Fault`] ends the run; effects and states until then stay.
-    pub fn run(
-        &self,
-        block: &Block,
-        frame: &mut [f64],
-        memory: &mut Memory<'_>,
-        env: &mut dyn Env,
-    ) -> Result<(), Fault> {
-        let _ = (block, frame, memory, env);
-        Err(Fault { kind: FaultKind::Malformed, at: crate::Span::default() })
-    }
-}

@@ -1,0 +1,165 @@
+//! Code for calls of built-in functions.
+
+use super::code::Instr;
+use super::compile::{Compiled, Compiler, Place, error};
+use super::compile_expr::{arguments, gives};
+use crate::{Expr, Function, Type, pattern::Bindings};
+
+impl Compiler<'_> {
+    pub(super) fn gen_builtin(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
+        use Function as F;
+        match f {
+            F::Length | F::At | F::First | F::Last | F::Push | F::Sum | F::Smallest | F::Largest => {
+                self.gen_list_function(e, f, dest)
+            }
+            F::Low | F::High => {
+                let [range] = arguments(e)?;
+                let (Type::Range(_), Ok(())) = (&range.ty, gives(e, &Type::NUMBER)) else {
+                    return error(e.span, format!("a range is wanted here, not {}", range.ty));
+                };
+                let place = self.generate(range, None)?;
+                Ok(self.settle(place.plus(u32::from(f == F::High)), dest, 1, e.span))
+            }
+            F::Draw | F::Inside => self.gen_env_function(e, f, dest),
+            F::Norm | F::Distance => {
+                self.check_call(e, f)?;
+                let d = self.dest(dest, 1, e.span)?;
+                let top = self.body.top;
+                let instr = match e.args.as_slice() {
+                    [a, b] => Instr::Distance { d, a: self.registers(a)?, b: self.registers(b)? },
+                    [a] => Instr::Norm { d, a: self.registers(a)? },
+                    _ => return error(e.span, "wrong number of arguments"),
+                };
+                self.body.top = top;
+                self.emit(instr, e.span);
+                Ok(Place::frame(d))
+            }
+            F::Abs
+            | F::Sign
+            | F::Floor
+            | F::Ceil
+            | F::Round
+            | F::Sin
+            | F::Cos
+            | F::Tan
+            | F::Asin
+            | F::Acos
+            | F::Exp
+            | F::Log
+            | F::Wrap
+            | F::Towards
+            | F::AngleOf => {
+                let [x] = arguments(e)?;
+                self.check_call(e, f)?;
+                let top = self.body.top;
+                let a = self.scalar(x)?;
+                self.body.top = top;
+                let d = self.dest(dest, 1, e.span)?;
+                let instr = if f == F::Abs { Instr::Abs { d, a } } else { Instr::Function1 { f, d, a } };
+                self.emit(instr, e.span);
+                Ok(Place::frame(d))
+            }
+            F::Min | F::Max | F::Atan2 | F::Hypot | F::Modulo => {
+                let [x, y] = arguments(e)?;
+                self.check_call(e, f)?;
+                let top = self.body.top;
+                let (a, b) = (self.scalar(x)?, self.scalar(y)?);
+                self.body.top = top;
+                let d = self.dest(dest, 1, e.span)?;
+                let instr = match f {
+                    F::Min => Instr::Min { d, a, b },
+                    F::Max => Instr::Max { d, a, b },
+                    _ => Instr::Function2 { f, d, a, b },
+                };
+                self.emit(instr, e.span);
+                Ok(Place::frame(d))
+            }
+            F::Clamp
+            | F::HeadingOf
+            | F::Polar
+            | F::Unit
+            | F::Rotate
+            | F::PoseAt
+            | F::Bearing
+            | F::Place
+            | F::FromBody
+            | F::ToBody
+            | F::PointFromBody
+            | F::PointToBody
+            | F::Twist
+            | F::CircleIntersections
+            | F::FirstContact
+            | F::Exactly
+            | F::Normal
+            | F::Uniform
+            | F::Skewed
+            | F::Within => {
+                let t = self.check_call(e, f)?;
+                let n = self.width(&t, e.span)?;
+                let d = self.dest(dest, n, e.span)?;
+                let top = self.body.top;
+                let a = self.in_a_row(&e.args)?;
+                self.body.top = top;
+                self.emit(Instr::FunctionN { f, d, a }, e.span);
+                Ok(Place::frame(d))
+            }
+        }
+    }
+
+    /// Values one after the other in the frame; the first register.
+    fn in_a_row(&mut self, args: &[Expr]) -> Compiled<u32> {
+        let mut widths = Vec::new();
+        for arg in args {
+            widths.push(self.width(&arg.ty, arg.span)?);
+        }
+        let at = args.first().map(|a| a.span).unwrap_or_default();
+        let a = self.alloc(widths.iter().sum(), at)?;
+        let (top, mut to) = (self.body.top, a);
+        for (arg, width) in args.iter().zip(widths) {
+            self.generate(arg, Some(to))?;
+            self.body.top = top;
+            to += width;
+        }
+        Ok(a)
+    }
+
+    /// Functions that ask the surroundings.
+    fn gen_env_function(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
+        self.check_call(e, f)?;
+        self.body.variable += 1;
+        let d = self.dest(dest, 1, e.span)?;
+        let top = self.body.top;
+        let instr = match e.args.as_slice() {
+            [from] => Instr::Draw { d, a: self.registers(from)? },
+            [point, region] => Instr::Inside { d, a: self.registers(point)?, b: self.scalar(region)? },
+            _ => return error(e.span, "wrong number of arguments"),
+        };
+        self.body.top = top;
+        self.emit(instr, e.span);
+        Ok(Place::frame(d))
+    }
+
+    /// Checks arguments and type of a call against the function's signature; returns the type.
+    fn check_call(&mut self, e: &Expr, f: Function) -> Compiled<Type> {
+        let signature = f.signature();
+        if signature.parameters.len() != e.args.len() {
+            return error(
+                e.span,
+                format!("`{}` takes {} arguments", signature.name, signature.parameters.len()),
+            );
+        }
+        let mut vars = Bindings::default();
+        for (arg, parameter) in e.args.iter().zip(&signature.parameters) {
+            if !parameter.pattern.matches(&arg.ty, &mut vars) {
+                return error(arg.span, format!("`{}` does not take {} here", signature.name, arg.ty));
+            }
+        }
+        match signature.result.instantiate(&vars) {
+            Some(t) => {
+                gives(e, &t)?;
+                Ok(t)
+            }
+            None => error(e.span, format!("the type of `{}` is not determined", signature.name)),
+        }
+    }
+}
