@@ -51,7 +51,8 @@ impl Stream {
 /// lost for a receiver is known without keeping anything for the pair.
 /// Mixing steps: Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators (2014), mix64.
 pub fn chance(seed: u64, topic: u64, sender: u64, receiver: u64, number: u64) -> f64 {
-    let bits = [topic, sender, receiver, number].into_iter().fold(mix(seed), |h, x| mix(h ^ mix(x.wrapping_add(h))));
+    let bits =
+        [topic, sender, receiver, number].into_iter().fold(mix(seed), |h, x| mix(h ^ mix(x.wrapping_add(h))));
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 

@@ -14,6 +14,7 @@ pub fn decide(
     losers: &mut Losers,
 ) -> Option<Time> {
     let (mut total, mut expires) = (0.0, Time::MAX);
+    let width = out.len();
     out.fill(0.0);
     for (i, (p, &w)) in proposals.iter().zip(weights).enumerate() {
         if !p.alive(now) {
@@ -21,7 +22,7 @@ pub fn decide(
         } else if w > 0.0 {
             total += w;
             expires = expires.min(p.expires);
-            for (o, c) in out.iter_mut().zip(&commands[i * out.len()..]) {
+            for (o, c) in out.iter_mut().zip(&commands[i * width..]) {
                 *o += w * c;
             }
         } else {

@@ -1,52 +1,125 @@
-//! The engine: runs a mission on a platform.
+//! The engine: runs a mission on a platform, in virtual time.
+//!
+//! At an instant, in this order: the platform hands over readings and reports; outputs that were put off
+//! and letters arrive; units are released and evaluated, higher priority first, then in order of robot,
+//! agent and unit; arbiters decide and commands are sent; goals, expectations and the done condition are
+//! judged. Activations of one instant see other agents as they were before it: what they publish arrives
+//! at least a microsecond later, and a parameter they set holds from the next activations on. Events are
+//! raised within the agent and release units at the same instant, after those before them.
 
+mod activate;
+mod actuate;
+mod batch;
+mod board;
+mod cast;
+mod commit;
+mod contacts;
+mod env;
+mod finish;
+mod goals;
+mod grid;
+mod instant;
+mod judge;
+mod log;
+mod minds;
+mod post;
+mod queue;
+mod recorder;
+mod regions;
 pub mod report;
+mod senses;
+mod setup;
+mod verdict;
 
-use crate::{Mission, Platform, Scene, Settings, TraceSink};
+use crate::{Mission, Platform, Readings, Report, Scene, Time};
+use activate::{Desk, Outcome as Evaluated, Release};
+use actuate::Actuators;
+use batch::Workers;
+use board::Board;
+use cast::Cast;
+pub use cast::DEFAULT_LIFETIME;
+use contacts::Contacts;
+use goals::Goals;
+use judge::Judge;
+use minds::Minds;
+use post::Mail;
+use queue::Queue;
+use recorder::Recorder;
+use regions::Regions;
 pub use report::{Outcome, RunReport};
-use soifra_graph::Diagnostic;
-use std::sync::atomic::AtomicBool;
+use senses::Senses;
+use serde::{Deserialize, Serialize};
+use soifra_graph::Texts;
+use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
 /// One run of a mission.
 pub struct Engine<'m> {
-    _mission: &'m Mission,
-    _platform: &'m mut dyn Platform,
-    _sink: &'m mut dyn TraceSink,
-    _stop: &'m AtomicBool,
+    mission: &'m Mission,
+    scene: &'m Scene,
+    platform: &'m mut dyn Platform,
+    recorder: Recorder<'m>,
+    stop: &'m AtomicBool,
+    seed: u64,
+    texts: Texts,
+    cast: Cast,
+    regions: Regions,
+    /// Units that a message on each topic sets off.
+    subscribers: Vec<Vec<u32>>,
+    /// Units that a reading sets off, by robot and sensor.
+    on_reading: BTreeMap<(u32, u32), Vec<u32>>,
+    /// The time limit.
+    limit: Option<Time>,
+
+    now: Time,
+    /// When the platform was polled last.
+    polled: Time,
+    params: Vec<f64>,
+    new_params: Vec<(u32, Vec<f64>)>,
+    minds: Minds,
+    /// Status of each sub-goal as committed.
+    subgoals: Vec<u8>,
+    clocks: Vec<Clock>,
+    senses: Senses,
+    boards: Vec<Board>,
+    mail: Mail,
+    queue: Queue,
+    actuators: Actuators,
+    contacts: Contacts,
+    goals: Goals,
+    judge: Judge,
+    faults: Vec<String>,
+    /// Why the run is to be aborted.
+    aborted: Option<String>,
+    /// What was traced last of each robot and mover.
+    poses: Vec<Option<([f64; 7], f64)>>,
+    movers: BTreeMap<String, [f64; 7]>,
+
+    // Room that is kept between instants.
+    places: Vec<[f64; 3]>,
+    readings: Readings,
+    reports: Vec<Report>,
+    releases: Vec<Release>,
+    outcomes: Vec<Evaluated>,
+    workers: Workers,
+    desk: Desk,
+    /// Activations and polls of the current instant.
+    events: usize,
 }
 
-impl<'m> Engine<'m> {
-    /// Prepares a run. `stop` is the operator's stop: once it is true, the run ends after the current
-    /// instant with every robot's safe action.
-    ///
-    /// # Errors
-    /// When an initial value, an argument or a duration cannot be computed.
-    pub fn new(
-        mission: &'m Mission,
-        settings: &Settings,
-        scene: &'m Scene,
-        platform: &'m mut dyn Platform,
-        sink: &'m mut dyn TraceSink,
-        stop: &'m AtomicBool,
-    ) -> Result<Engine<'m>, Diagnostic> {
-        let _ = (settings, scene);
-        Ok(Engine { _mission: mission, _platform: platform, _sink: sink, _stop: stop })
-    }
+/// When a unit may be released again.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Clock {
+    last: Option<Time>,
+    /// Until when an activation runs.
+    busy: Time,
+    /// Whether it is to be woken.
+    waiting: bool,
+    /// A release waits that came without a letter.
+    due: Option<Due>,
+}
 
-    /// Runs to the end.
-    pub fn run(self) -> RunReport {
-        RunReport {
-            mission: String::new(),
-            seed: 0,
-            outcome: Outcome::Aborted,
-            reason: "the engine is being written".into(),
-            sim_time_s: 0.0,
-            collisions: 0,
-            expectations: Vec::new(),
-            goals: Vec::new(),
-            robots: Vec::new(),
-            metrics: std::collections::BTreeMap::new(),
-            faults: Vec::new(),
-        }
-    }
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Due {
+    release: Time,
+    cause: Option<u64>,
 }

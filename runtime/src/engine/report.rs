@@ -59,6 +59,9 @@ impl Outcome {
 /// The reason of a run that the operator stopped.
 pub const INTERRUPTED: &str = "interrupted";
 
+/// Stands for the agent in records of a lost platform.
+pub const PLATFORM: &str = "platform";
+
 impl RunReport {
     /// Whether the operator stopped it.
     pub fn interrupted(&self) -> bool {

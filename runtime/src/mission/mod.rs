@@ -1,8 +1,31 @@
 //! A mission that is ready to run: the graph with all its code compiled.
 
+pub(crate) mod code;
+mod compile;
+mod group;
+mod judge;
+pub(crate) mod locals;
+pub(crate) mod margin;
+mod scene;
+pub(crate) mod start;
+pub(crate) mod uses;
+
 use crate::Scene;
-use soifra_graph::{Diagnostic, Graph, Value};
+use code::{AgentCode, GroupCode, JudgeCode, SceneCode, TopicCode};
+use compile::Compiled;
+pub use scene::MAX_INSTANCES;
+use soifra_graph::{
+    Diagnostic, Graph, Span, Texts, Value,
+    eval::{CompileError, Compiler, Layout, Program},
+};
 use std::collections::BTreeMap;
+
+/// Code of diagnostics about a graph that does not fit together.
+pub const DAMAGED: &str = "S0801";
+/// Code of diagnostics about a value that cannot be computed at the start of a run.
+pub const START_VALUE: &str = "S0901";
+/// Code of diagnostics about a parameter that does not exist or is given a value of another type.
+pub const PARAMETER: &str = "S0902";
 
 /// What a run is a function of, besides the graph and recorded inputs.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +41,17 @@ pub struct Settings {
 /// A loaded graph.
 pub struct Mission {
     pub(crate) graph: Graph,
+    /// Texts of the graph and of its code.
+    pub(crate) texts: Texts,
+    pub(crate) program: Program,
+    pub(crate) params: Layout,
+    /// Registers of the largest frame of any unit or arbiter.
+    pub(crate) frame: usize,
+    pub(crate) agents: Vec<AgentCode>,
+    pub(crate) groups: Vec<GroupCode>,
+    pub(crate) topics: Vec<TopicCode>,
+    pub(crate) judge: JudgeCode,
+    pub(crate) scene: SceneCode,
 }
 
 impl Mission {
@@ -26,7 +60,19 @@ impl Mission {
     /// # Errors
     /// Everything that does not fit together in a graph that was not written by the checker.
     pub fn load(graph: Graph) -> Result<Mission, Vec<Diagnostic>> {
-        Ok(Mission { graph })
+        let mut texts = graph.texts.clone();
+        let mut errors = Vec::new();
+        let mut compiler = Compiler::for_graph(&graph, &mut texts);
+        let parts = compile(&mut compiler, &graph, &mut errors);
+        let program = compiler.finish();
+        match parts {
+            Some((agents, groups, topics, judge, scene)) if errors.is_empty() => {
+                let params = Layout::params(&graph);
+                let frame = agents.iter().map(|a| a.frame).max().unwrap_or(0);
+                Ok(Mission { graph, texts, program, params, frame, agents, groups, topics, judge, scene })
+            }
+            _ => Err(errors.into_iter().map(diagnostic).collect()),
+        }
     }
 
     /// The graph.
@@ -39,7 +85,74 @@ impl Mission {
     /// # Errors
     /// A parameter that does not exist or has another type, or an expression that cannot be computed.
     pub fn scene(&self, settings: &Settings) -> Result<Scene, Diagnostic> {
-        let _ = settings;
-        Err(Diagnostic::error("S0900", "the engine is being written"))
+        scene::set(self, settings)
     }
+
+    /// `path:line:column` of a span, empty when it lies in no source.
+    pub(crate) fn place(&self, at: Span) -> String {
+        let Some(source) = self.graph.sources.get(at.file as usize) else { return String::new() };
+        let Some(before) = source.text.get(..at.start as usize) else { return String::new() };
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        format!("{}:{line}:{column}", source.path)
+    }
+
+    /// What is written at a span.
+    pub(crate) fn written(&self, at: Span) -> &str {
+        let source = self.graph.sources.get(at.file as usize);
+        source.and_then(|s| s.text.get(at.start as usize..at.end as usize)).unwrap_or_default()
+    }
+}
+
+type Parts = (Vec<AgentCode>, Vec<GroupCode>, Vec<TopicCode>, JudgeCode, SceneCode);
+
+fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) -> Option<Parts> {
+    fn keep<T>(result: Compiled<T>, errors: &mut Vec<CompileError>) -> Option<T> {
+        result.map_err(|e| errors.push(e)).ok()
+    }
+    if graph.schema != soifra_graph::mission::SCHEMA {
+        let text = format!("schema {} is not known, only {}", graph.schema, soifra_graph::mission::SCHEMA);
+        errors.push(CompileError { text, at: Span::default() });
+        return None;
+    }
+    let agents =
+        (0..graph.agents.len() as u32).map(|a| compile::agent(c, graph, a, errors)).collect::<Vec<_>>();
+    let groups = graph.robots.iter().map(|r| keep(group::group(c, graph, r), errors)).collect::<Vec<_>>();
+    let topics = graph.topics.iter().map(|t| keep(topic(c, graph, t), errors)).collect::<Vec<_>>();
+    let judge = keep(judge::judge(c, graph), errors);
+    let scene = keep(scene::compile(c, graph), errors);
+    for s in graph.goals.iter().flat_map(|g| &g.subgoals) {
+        if s.agent as usize >= graph.agents.len() {
+            errors.push(CompileError {
+                text: "a sub-goal names an agent that does not exist".into(),
+                at: s.at,
+            });
+        }
+    }
+    let (agents, groups): (Option<Vec<_>>, Option<Vec<_>>) =
+        (agents.into_iter().collect(), groups.into_iter().collect());
+    let topics: Option<Vec<_>> = topics.into_iter().collect();
+    Some((agents?, groups?, topics?, judge?, scene?))
+}
+
+fn topic(c: &mut Compiler<'_>, graph: &Graph, t: &soifra_graph::Topic) -> Compiled<TopicCode> {
+    let mut arg = |name: &str| {
+        let e = t.channel.args.iter().find(|(n, _)| **n == *name).map(|(_, e)| e);
+        e.map(|e| compile::alone(c, e, &[])).transpose()
+    };
+    Ok(TopicCode {
+        name: t.channel.name.clone(),
+        width: graph.types.width(&t.ty),
+        delay: arg("delay")?,
+        loss: arg("loss")?,
+        range: arg("range")?,
+        lifetime: arg("lifetime")?,
+        capacity: arg("capacity")?,
+    })
+}
+
+fn diagnostic(e: CompileError) -> Diagnostic {
+    Diagnostic::error(DAMAGED, format!("the graph is damaged: {}", e.text))
+        .at(e.at, "here")
+        .hint("compile the mission from its sources again")
 }

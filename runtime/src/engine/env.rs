@@ -1,0 +1,194 @@
+//! The surroundings of an activation: what an agent can know, and the log of what it does.
+
+use super::{
+    board::{Board, Near},
+    cast::{Cast, Instance},
+    log::{Item, Log, Told},
+    regions::Regions,
+    senses::Senses,
+};
+use crate::{
+    Mission, Scene, Time,
+    mission::{code::BindingCode, start},
+    seed::Stream,
+};
+use soifra_graph::{
+    Distribution, Own, Type, Value,
+    eval::{Effect, Env, FaultKind},
+    reason,
+};
+
+/// What all activations of an instant share; nothing in it changes before they are committed.
+pub(crate) struct Instant<'a> {
+    pub mission: &'a Mission,
+    pub scene: &'a Scene,
+    pub cast: &'a Cast,
+    pub senses: &'a Senses,
+    pub boards: &'a [Board],
+    pub regions: &'a Regions,
+    pub params: &'a [f64],
+    pub texts: &'a soifra_graph::Texts,
+    /// True positions of the robots, for the radio.
+    pub places: &'a [[f64; 3]],
+    pub now: Time,
+    pub seed: u64,
+    /// Whether a trace is kept.
+    pub trace: bool,
+}
+
+impl Instant<'_> {
+    /// Steps since the run began.
+    pub fn steps(&self) -> f64 {
+        self.scene.step.map_or(0.0, |s| (self.now.0 / s.0.max(1)) as f64)
+    }
+}
+
+/// The surroundings of one agent.
+pub(crate) struct AgentEnv<'a, 'i> {
+    pub instant: &'a Instant<'i>,
+    pub instance: u32,
+    pub who: &'a Instance,
+    pub binding: &'a BindingCode,
+    pub log: &'a mut Log,
+    pub near: &'a mut Near,
+    pub heard: &'a mut Vec<u64>,
+    pub drawn: &'a mut u64,
+    /// When the current state of the machine was entered.
+    pub entered: Time,
+}
+
+impl Env for AgentEnv<'_, '_> {
+    fn now(&self) -> Result<f64, FaultKind> {
+        Ok(self.instant.now.seconds())
+    }
+
+    fn steps(&self) -> Result<f64, FaultKind> {
+        Ok(self.instant.steps())
+    }
+
+    fn elapsed(&self) -> Result<f64, FaultKind> {
+        Ok((self.instant.now - self.entered).seconds())
+    }
+
+    fn own(&self, which: Own, out: &mut [f64]) -> Result<(), FaultKind> {
+        start::own(self.instant.scene, self.who.robot, which, out)
+    }
+
+    fn reading(&mut self, port: u32, optional: bool, out: &mut [f64]) -> Result<(), FaultKind> {
+        let sensor = self.binding.sensors.get(port as usize).ok_or(FaultKind::Malformed)?;
+        let reading = self.instant.senses.get(self.who.robot, *sensor, self.instant.now);
+        let value = match (optional, reading) {
+            (true, Err(reason)) => {
+                out.fill(0.0);
+                if let Some(tag) = out.first_mut() {
+                    *tag = reason::tag(reason);
+                }
+                return Ok(());
+            }
+            (true, Ok(value)) => {
+                let (tag, rest) = out.split_first_mut().ok_or(FaultKind::Malformed)?;
+                *tag = 0.0;
+                return fill(rest, value);
+            }
+            (false, Ok(value)) => value,
+            (false, Err(_)) => return Err(FaultKind::Unavailable("a reading")),
+        };
+        fill(out, value)
+    }
+
+    fn heard(&mut self, topic: u32, out: &mut [f64]) -> Result<(), FaultKind> {
+        let board = self.instant.boards.get(topic as usize).ok_or(FaultKind::Malformed)?;
+        let place = self.instant.places.get(self.who.robot as usize).copied().unwrap_or_default();
+        self.heard.clear();
+        let records = self.instant.trace.then_some(&mut *self.heard);
+        board.hear(self.instant.now, self.instance, place, out, self.near, records);
+        self.log.items.extend(self.heard.iter().map(|r| Item::Heard(*r)));
+        Ok(())
+    }
+
+    fn robot(&self) -> Option<u32> {
+        Some(self.who.robot)
+    }
+
+    fn inside(&self, point: [f64; 3], region: u32) -> Result<bool, FaultKind> {
+        self.instant.regions.inside(point, region)
+    }
+
+    fn draw(&mut self, from: Distribution) -> Result<f64, FaultKind> {
+        let mut stream = Stream::at(self.instant.seed, self.who.stream, *self.drawn);
+        let x = stream.draw(from);
+        *self.drawn = stream.position();
+        Ok(x)
+    }
+
+    fn effect(&mut self, effect: Effect<'_>) -> Result<(), FaultKind> {
+        let trace = self.instant.trace;
+        let item = match effect {
+            Effect::Command { port, registers } => {
+                Item::Command { port, registers: self.log.keep(registers) }
+            }
+            Effect::Publish { topic, registers } => {
+                Item::Publish { topic, registers: self.log.keep(registers) }
+            }
+            Effect::Tell { performative, to, content, registers } => Item::Tell(Box::new(Told {
+                performative: performative.into(),
+                to: to.into(),
+                content: content.clone(),
+                registers: self.log.keep(registers),
+            })),
+            Effect::Raise(event) => Item::Raise(event),
+            Effect::SetParam { param, registers } => {
+                Item::SetParam { param, registers: self.log.keep(registers) }
+            }
+            Effect::Note { text, value } if trace => Item::Note(self.note(text, value).into()),
+            Effect::RuleFired { rule, at } if trace => Item::Rule { rule, at },
+            // Changes of states are seen by comparing before and after.
+            Effect::Note { .. } | Effect::RuleFired { .. } | Effect::StateSet { .. } => return Ok(()),
+        };
+        self.log.items.push(item);
+        Ok(())
+    }
+}
+
+fn fill(out: &mut [f64], value: &[f64]) -> Result<(), FaultKind> {
+    if out.len() != value.len() {
+        return Err(FaultKind::Malformed);
+    }
+    out.copy_from_slice(value);
+    Ok(())
+}
+
+impl AgentEnv<'_, '_> {
+    fn note(&self, text: &str, value: Option<(&Type, &[f64])>) -> String {
+        let Some((ty, registers)) = value else { return text.to_string() };
+        let types = &self.instant.mission.graph.types;
+        let value = show(&Value::from_registers(registers, ty, types, self.instant.texts), ty);
+        if text.is_empty() { value } else { format!("{text}: {value}") }
+    }
+}
+
+/// A value as a remark shows it, in SI units.
+fn show(value: &Value, ty: &Type) -> String {
+    let list = |items: &[f64]| items.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    match (value, ty) {
+        (Value::Bool(b), _) => b.to_string(),
+        (Value::Int(i), _) => i.to_string(),
+        (Value::Number(x), Type::Quantity(d)) => match d.si_unit() {
+            unit if unit.is_empty() => x.to_string(),
+            unit => format!("{x} {unit}"),
+        },
+        (Value::Number(x), _) => format!("{x} rad"),
+        (Value::Text(s), _) => s.clone(),
+        (Value::Variant(v), _) => v.to_string(),
+        (Value::Vector(v), _) => format!("({})", list(v)),
+        (Value::Pose(v), _) => format!("({})", list(v)),
+        (Value::Twist(v), _) => format!("({})", list(v)),
+        (Value::Matrix(v), _) => format!("[{}]", list(v)),
+        (Value::Some(v), Type::Option(t)) => show(v, t),
+        (Value::None(why), _) => format!("none ({why})"),
+        (Value::List(items), Type::List(t, _)) => {
+            format!("[{}]", items.iter().map(|v| show(v, t)).collect::<Vec<_>>().join(", "))
+        }
+        (other, _) => format!("{other:?}"),
+    }
+}

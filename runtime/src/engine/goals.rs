@@ -1,0 +1,121 @@
+//! Goals: what all robots together believe to have achieved.
+
+use super::{
+    cast::Cast,
+    minds::{ACHIEVED, ACTIVE, FAILED},
+};
+use crate::{Mission, Scene, Time};
+use serde::{Deserialize, Serialize};
+
+/// Counts of sub-goals by goal and by robot.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Goals {
+    goals: Vec<Count>,
+    robots: Vec<Count>,
+    /// When each robot had achieved all its sub-goals for the first time.
+    pub reached: Vec<Option<Time>>,
+    /// Status of each goal that was traced last.
+    traced: Vec<u8>,
+    changed: bool,
+}
+
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Count {
+    all: u32,
+    achieved: u32,
+    failed: u32,
+}
+
+impl Count {
+    fn status(&self) -> u8 {
+        match self {
+            c if c.all > 0 && c.achieved == c.all => ACHIEVED,
+            c if c.failed > 0 => FAILED,
+            _ => ACTIVE,
+        }
+    }
+
+    fn change(&mut self, before: u8, after: u8) {
+        let mut add = |status: u8, by: i32| match status {
+            ACHIEVED => self.achieved = self.achieved.saturating_add_signed(by),
+            FAILED => self.failed = self.failed.saturating_add_signed(by),
+            _ => {}
+        };
+        add(before, -1);
+        add(after, 1);
+    }
+}
+
+/// A status in words.
+pub(crate) fn word(status: u8) -> &'static str {
+    match status {
+        ACHIEVED => "achieved",
+        FAILED => "failed",
+        _ => "active",
+    }
+}
+
+impl Goals {
+    pub fn new(mission: &Mission, scene: &Scene, cast: &Cast) -> Self {
+        let mut g = Goals {
+            goals: vec![Count::default(); mission.graph.goals.len()],
+            robots: vec![Count::default(); scene.robots.len()],
+            reached: vec![None; scene.robots.len()],
+            traced: vec![ACTIVE; mission.graph.goals.len()],
+            changed: false,
+        };
+        for i in &cast.instances {
+            for s in &mission.agents[i.agent as usize].subgoals {
+                g.goals[s.goal as usize].all += 1;
+                g.robots[i.robot as usize].all += 1;
+            }
+        }
+        // A goal with a sub-goal that nobody pursues is never achieved.
+        for (count, goal) in g.goals.iter_mut().zip(&mission.graph.goals) {
+            let pursued = |agent: u32| cast.instances.iter().any(|i| i.agent == agent);
+            count.all += goal.subgoals.iter().filter(|s| !pursued(s.agent)).count() as u32;
+        }
+        g
+    }
+
+    /// A sub-goal of a robot changes its status.
+    pub fn change(&mut self, now: Time, goal: u32, robot: u32, before: u8, after: u8) {
+        self.goals[goal as usize].change(before, after);
+        let robot_count = &mut self.robots[robot as usize];
+        robot_count.change(before, after);
+        if robot_count.status() == ACHIEVED {
+            self.reached[robot as usize].get_or_insert(now);
+        }
+        self.changed = true;
+    }
+
+    /// Whether a goal is achieved.
+    pub fn achieved(&self, goal: u32) -> Option<bool> {
+        self.goals.get(goal as usize).map(|c| c.status() == ACHIEVED)
+    }
+
+    /// Whether a robot believes that it has achieved all its sub-goals.
+    pub fn robot_reached(&self, robot: usize) -> bool {
+        self.robots.get(robot).is_some_and(|c| c.status() == ACHIEVED)
+    }
+
+    /// Status of a goal, in words.
+    pub fn status(&self, goal: usize) -> &'static str {
+        self.goals.get(goal).map_or("active", |c| word(c.status()))
+    }
+
+    /// Goals whose status has changed since they were asked for last.
+    pub fn changes(&mut self) -> Vec<(usize, &'static str)> {
+        if !std::mem::take(&mut self.changed) {
+            return Vec::new();
+        }
+        let mut out = Vec::new();
+        for (i, (count, traced)) in self.goals.iter().zip(&mut self.traced).enumerate() {
+            if count.status() != *traced {
+                *traced = count.status();
+                out.push((i, word(*traced)));
+            }
+        }
+        out
+    }
+}

@@ -1,0 +1,161 @@
+//! A uniform grid over senders, to find the near ones without asking all.
+
+/// A sender at a place.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Site {
+    pub at: [f64; 3],
+    /// Sender.
+    pub sender: u32,
+    /// Its message.
+    pub message: u32,
+}
+
+/// Sites sorted into square cells of the xy-plane, about two in each.
+#[derive(Debug, Default)]
+pub(crate) struct Grid {
+    cell: f64,
+    low: [f64; 2],
+    size: [usize; 2],
+    /// First site of each cell, and the end.
+    starts: Vec<u32>,
+    sites: Vec<Site>,
+    /// Cell of each site, while it is built.
+    cells: Vec<u32>,
+}
+
+impl Grid {
+    /// Sorts sites. Sites of one cell stay in order.
+    pub fn build(&mut self, sites: &[Site]) {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for s in sites {
+            for a in 0..2 {
+                low[a] = low[a].min(s.at[a]);
+                high[a] = high[a].max(s.at[a]);
+            }
+        }
+        let extent = [0, 1].map(|a| (high[a] - low[a]).max(0.0));
+        // A row of robots has no area: then the cells share its length.
+        let n = sites.len().max(1) as f64;
+        let cell = (2.0 * extent[0] * extent[1] / n).sqrt().max(2.0 * extent[0].max(extent[1]) / n);
+        self.cell =
+            if cell.is_finite() && cell > 1e-9 { cell } else { 1e-9_f64.max(extent[0].max(extent[1])) };
+        self.low = if sites.is_empty() { [0.0; 2] } else { low };
+        let most = 2 * sites.len() + 2;
+        self.size = extent.map(|e| ((e / self.cell) as usize + 1).min(most));
+        self.starts.clear();
+        self.starts.resize(self.size[0] * self.size[1] + 1, 0);
+        self.cells.clear();
+        for s in sites {
+            let [x, y] =
+                [0, 1].map(|a| (((s.at[a] - self.low[a]) / self.cell) as usize).min(self.size[a] - 1));
+            let c = y * self.size[0] + x;
+            self.cells.push(c as u32);
+            self.starts[c + 1] += 1;
+        }
+        for c in 1..self.starts.len() {
+            self.starts[c] += self.starts[c - 1];
+        }
+        self.sites.clear();
+        self.sites.resize(sites.len(), Site { at: [0.0; 3], sender: 0, message: 0 });
+        let mut next = self.starts.clone();
+        for (s, &c) in sites.iter().zip(&self.cells) {
+            self.sites[next[c as usize] as usize] = *s;
+            next[c as usize] += 1;
+        }
+    }
+
+    /// Visits sites around `at` in growing squares until all within `range` are seen, or `enough` says,
+    /// given a distance up to which all have been seen, that no more are wanted.
+    pub fn around(
+        &self,
+        at: [f64; 3],
+        range: f64,
+        mut visit: impl FnMut(&Site),
+        mut enough: impl FnMut(f64) -> bool,
+    ) {
+        if self.sites.is_empty() {
+            return;
+        }
+        let cell_of = |a: usize| ((at[a] - self.low[a]) / self.cell).floor().clamp(-1e9, 1e9) as i64;
+        let center = [cell_of(0), cell_of(1)];
+        let size = [self.size[0] as i64, self.size[1] as i64];
+        let gap = |a: usize| (-center[a]).max(center[a] - (size[a] - 1)).max(0);
+        let reach = |a: usize| center[a].abs().max((size[a] - 1 - center[a]).abs());
+        let mut ring = gap(0).max(gap(1));
+        let last = reach(0).max(reach(1));
+        while ring <= last {
+            let (x0, x1) = (center[0] - ring, center[0] + ring);
+            for y in (center[1] - ring).max(0)..=(center[1] + ring).min(size[1] - 1) {
+                if y == center[1] - ring || y == center[1] + ring {
+                    self.row(y, x0.max(0), x1.min(size[0] - 1), &mut visit);
+                } else {
+                    if x0 >= 0 {
+                        self.row(y, x0, x0, &mut visit);
+                    }
+                    if x1 < size[0] && ring > 0 {
+                        self.row(y, x1, x1, &mut visit);
+                    }
+                }
+            }
+            let seen = ring as f64 * self.cell;
+            if seen > range || enough(seen) {
+                return;
+            }
+            ring += 1;
+        }
+    }
+
+    fn row(&self, y: i64, from: i64, to: i64, visit: &mut impl FnMut(&Site)) {
+        if from > to || to < 0 || from >= self.size[0] as i64 {
+            return;
+        }
+        let c = y as usize * self.size[0];
+        let (a, b) = (self.starts[c + from as usize], self.starts[c + to as usize + 1]);
+        self.sites[a as usize..b as usize].iter().for_each(visit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::chance;
+
+    #[test]
+    fn finds_what_a_search_of_all_finds() {
+        for n in [0u32, 1, 2, 17, 300] {
+            for flat in [false, true] {
+                let sites: Vec<Site> = (0..n)
+                    .map(|i| {
+                        let c = |k| 20.0 * chance(5, u64::from(n), k, u64::from(i), 0);
+                        Site { at: [c(1), if flat { 3.0 } else { c(2) }, 0.0], sender: i, message: 0 }
+                    })
+                    .collect();
+                let mut grid = Grid::default();
+                grid.build(&sites);
+                for (at, range) in
+                    [([3.0, 4.0, 0.0], 2.5), ([-30.0, 4.0, 0.0], 35.0), ([10.0, 10.0, 0.0], 1e9)]
+                {
+                    let near = |s: &Site| {
+                        let d = [0, 1].map(|a| s.at[a] - at[a]);
+                        d[0] * d[0] + d[1] * d[1] <= range * range
+                    };
+                    let mut found: Vec<u32> = Vec::new();
+                    grid.around(
+                        at,
+                        range,
+                        |s| {
+                            if near(s) {
+                                found.push(s.sender)
+                            }
+                        },
+                        |_| false,
+                    );
+                    found.sort_unstable();
+                    let all: Vec<u32> = sites.iter().filter(|s| near(s)).map(|s| s.sender).collect();
+                    assert_eq!(found, all, "{n} {flat} {at:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,455 @@
+//! One instant after the other.
+
+use super::{
+    Due, Engine, Outcome,
+    activate::Release,
+    env::Instant,
+    judge::{Court, Occasion},
+    post::Delivered,
+    queue::Scheduled,
+    report::{INTERRUPTED, RunReport},
+};
+use crate::{Event, Report, Time};
+use std::sync::atomic::Ordering;
+
+/// The fewest activations at one instant that are too many.
+const TOO_MANY: usize = 1_000_000;
+
+/// How a run ends.
+pub(super) struct End {
+    pub outcome: Outcome,
+    pub reason: String,
+}
+
+impl Engine<'_> {
+    /// Runs to the end.
+    pub fn run(mut self) -> RunReport {
+        let end = loop {
+            if let Some(end) = self.instant() {
+                break end;
+            }
+            if self.stop.load(Ordering::Relaxed) {
+                break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
+            }
+            let Some(next) = self.next() else {
+                break End { outcome: Outcome::Failed, reason: "nothing is left to happen".into() };
+            };
+            if next > self.now {
+                self.events = 0;
+                self.now = next;
+            }
+        };
+        self.finish(end)
+    }
+
+    /// The next instant.
+    fn next(&self) -> Option<Time> {
+        let all = [self.platform.next_due(), self.queue.next(), self.actuators.next()];
+        let next = all.into_iter().flatten().filter(|t| *t < Time::MAX).min()?;
+        Some(self.limit.map_or(next, |l| l.min(next)))
+    }
+
+    /// Everything that happens at this instant.
+    fn instant(&mut self) -> Option<End> {
+        self.events += 1;
+        self.poll();
+        self.arrive();
+        self.activate_all();
+        self.decide();
+        self.judge_instant()
+    }
+
+    /// Takes what the platform hands over.
+    fn poll(&mut self) {
+        let before = self.polled;
+        let mut readings = std::mem::take(&mut self.readings);
+        let mut reports = std::mem::take(&mut self.reports);
+        readings.clear();
+        reports.clear();
+        self.platform.poll(self.now, &mut readings, &mut reports);
+        self.contacts_begin_and_end(&reports, before);
+        for report in &reports {
+            if let Report::Lost { robot, reason, .. } = report {
+                let text = format!("the platform is lost: {reason}");
+                self.fail(Some(*robot), super::report::PLATFORM, text, None);
+            }
+        }
+        self.trace_poses();
+        for r in &readings.items {
+            let registers = readings.registers.get(r.from as usize..r.to as usize).unwrap_or_default();
+            let record = self.recorder.record(self.now, None, || Event::Reading {
+                robot: r.robot,
+                sensor: r.sensor,
+                captured: r.captured,
+                registers: registers.to_vec(),
+            });
+            if self.senses.take(r, registers, record.unwrap_or(0))
+                && let Some(units) = self.on_reading.get(&(r.robot, r.sensor))
+            {
+                for u in units.clone() {
+                    self.admit(u, record);
+                }
+            }
+        }
+        self.readings = readings;
+        self.reports = reports;
+    }
+
+    /// Counts contacts and judges what asks for them, at the instants at which they began.
+    fn contacts_begin_and_end(&mut self, reports: &[Report], before: Time) {
+        let mut began: Option<Time> = None;
+        for report in reports {
+            let (at, robot, other, with, begin) = match report {
+                Report::ContactBegin { at, robot, other, with } => (*at, *robot, *other, with, true),
+                Report::ContactEnd { at, robot, other, with } => (*at, *robot, *other, with, false),
+                Report::Lost { .. } => continue,
+            };
+            let at = at.max(before).min(self.now);
+            if let Some(t) = began
+                && at > t
+            {
+                self.judge_contact(t);
+                began = None;
+            }
+            self.recorder.record(at, None, || Event::Contact { robot, other, with: with.clone(), begin });
+            if begin {
+                self.contacts.begin(robot, other);
+                began = Some(at);
+            } else {
+                self.contacts.end(robot, other);
+            }
+        }
+        if let Some(t) = began {
+            self.judge_contact(t);
+        }
+        self.polled = self.now;
+    }
+
+    /// Records poses that have changed.
+    fn trace_poses(&mut self) {
+        if !self.recorder.on() {
+            return;
+        }
+        let Some(truth) = self.platform.truth() else { return };
+        for (r, last) in self.poses.iter_mut().enumerate() {
+            let robot = r as u32;
+            let now = (truth.pose(robot), truth.path_length(robot));
+            if *last != Some(now) {
+                *last = Some(now);
+                let (pose, path_m) = now;
+                self.recorder.record(self.now, None, || Event::Pose { robot, pose, path_m });
+            }
+        }
+        for (name, pose) in truth.movers() {
+            if self.movers.get(&name) != Some(&pose) {
+                self.movers.insert(name.clone(), pose);
+                self.recorder.record(self.now, None, || Event::Mover { name, pose });
+            }
+        }
+    }
+
+    /// Delivers what was put off until now, and releases periodic units.
+    fn arrive(&mut self) {
+        let now = self.now;
+        let mut mailboxes: Vec<u32> = Vec::new();
+        while let Some(what) = self.queue.take(now) {
+            match what {
+                Scheduled::Outputs { unit, record, log } => {
+                    for item in &log.items {
+                        self.apply(unit, item, &log, record);
+                    }
+                }
+                Scheduled::Deliver { letter, to } => {
+                    for unit in to {
+                        let record = self.trace_delivery(unit, &letter, None);
+                        let delivered = Delivered { letter: letter.clone(), record };
+                        if let Some(oldest) = self.mail.put(unit, delivered) {
+                            self.trace_delivery(unit, &oldest.letter, Some("the mailbox is full"));
+                        }
+                        mailboxes.push(unit);
+                    }
+                }
+                Scheduled::Wake(unit) => {
+                    self.clocks[unit as usize].waiting = false;
+                    if let Some(due) = self.clocks[unit as usize].due.take() {
+                        self.release(unit, due.release, due.cause, None);
+                    }
+                    if self.mail.waits(unit) {
+                        mailboxes.push(unit);
+                    }
+                }
+            }
+        }
+        mailboxes.sort_unstable();
+        mailboxes.dedup();
+        for unit in mailboxes {
+            self.open_mailbox(unit);
+        }
+        let mut due = Vec::new();
+        self.queue.tick(now, |unit| due.push(unit));
+        for unit in due {
+            self.admit(unit, None);
+        }
+    }
+
+    /// Releases a unit for as many of its letters as it may handle now.
+    fn open_mailbox(&mut self, unit: u32) {
+        while self.mail.waits(unit) {
+            if let Some(free) = self.blocked(unit) {
+                self.wake(unit, free);
+                return;
+            }
+            let Some(d) = self.mail.take(unit) else { return };
+            self.release(unit, self.now, d.record, Some(d.letter));
+        }
+    }
+
+    /// Until when a unit may not be released; `None` when it may now.
+    fn blocked(&self, unit: u32) -> Option<Time> {
+        let (clock, info) = (&self.clocks[unit as usize], &self.cast.units[unit as usize]);
+        let gap = clock.last.filter(|_| info.gap > Time::ZERO).map_or(Time::ZERO, |t| t + info.gap);
+        // A unit that takes its time is busy from its release on.
+        let running = clock.last.filter(|_| info.worst > Time::ZERO).map_or(Time::ZERO, |t| t + info.worst);
+        let free = gap.max(clock.busy).max(running);
+        (free > self.now).then_some(free)
+    }
+
+    fn wake(&mut self, unit: u32, at: Time) {
+        let clock = &mut self.clocks[unit as usize];
+        if !clock.waiting {
+            clock.waiting = true;
+            self.queue.put(at, Scheduled::Wake(unit));
+        }
+    }
+
+    /// A unit is to be released, now or as soon as it may. Of several releases that wait, one remains; a
+    /// periodic unit that is still running is skipped.
+    pub(super) fn admit(&mut self, unit: u32, cause: Option<u64>) {
+        let Some(free) = self.blocked(unit) else {
+            self.release(unit, self.now, cause, None);
+            return;
+        };
+        if self.cast.units[unit as usize].period.is_some() {
+            self.trace_overrun(unit, cause);
+            return;
+        }
+        let release = self.now;
+        self.clocks[unit as usize].due.get_or_insert(Due { release, cause });
+        self.wake(unit, free);
+    }
+
+    fn trace_overrun(&mut self, unit: u32, cause: Option<u64>) {
+        if !self.recorder.on() {
+            return;
+        }
+        let (agent, name) = self.names(unit);
+        let robot = self.cast.instances[self.cast.units[unit as usize].instance as usize].robot;
+        let now = self.now;
+        self.recorder.record(now, cause, || Event::Activation {
+            robot,
+            agent,
+            unit: name,
+            release: now,
+            start: now,
+            finish: now,
+            skipped: Some("the activation before it is still running".into()),
+        });
+    }
+
+    fn release(
+        &mut self,
+        unit: u32,
+        release: Time,
+        cause: Option<u64>,
+        letter: Option<std::sync::Arc<super::post::Letter>>,
+    ) {
+        self.clocks[unit as usize].last = Some(self.now);
+        self.releases.push(Release { unit, release, start: self.now, cause, letter });
+    }
+
+    /// Makes boards and places ready for units of some robots that hear topics.
+    pub(super) fn prepare(&mut self, topics: impl Iterator<Item = u32>, robots: impl Iterator<Item = u32>) {
+        let mut placed = false;
+        for t in topics {
+            if let Some(board) = self.boards.get_mut(t as usize) {
+                placed |= board.placed();
+                board.prepare(self.now);
+            }
+        }
+        if placed && let Some(truth) = self.platform.truth() {
+            for r in robots {
+                let [x, y, z, ..] = truth.pose(r);
+                if let Some(place) = self.places.get_mut(r as usize) {
+                    *place = [x, y, z];
+                }
+            }
+        }
+    }
+
+    /// Evaluates released units in waves: what one wave raises makes the next.
+    fn activate_all(&mut self) {
+        while !self.releases.is_empty() && self.aborted.is_none() {
+            let mut releases = std::mem::take(&mut self.releases);
+            let limit = TOO_MANY.max(100 * self.cast.units.len());
+            self.events += releases.len();
+            if self.events > limit {
+                let text = format!("more than {limit} activations at one instant");
+                let (agent, _) = self.names(releases[0].unit);
+                let robot = self.cast.units[releases[0].unit as usize].instance;
+                let robot = self.cast.instances[robot as usize].robot;
+                self.fail(Some(robot), &agent, text, None);
+                return;
+            }
+            let order = |r: &Release| (std::cmp::Reverse(self.cast.units[r.unit as usize].priority), r.unit);
+            if !releases.is_sorted_by_key(order) {
+                releases.sort_by_key(order);
+            }
+            self.prepare_wave(&releases);
+            let mut workers = std::mem::take(&mut self.workers);
+            let mut outcomes = std::mem::take(&mut self.outcomes);
+            let instant = Instant {
+                mission: self.mission,
+                scene: self.scene,
+                cast: &self.cast,
+                senses: &self.senses,
+                boards: &self.boards,
+                regions: &self.regions,
+                params: &self.params,
+                texts: &self.texts,
+                places: &self.places,
+                now: self.now,
+                seed: self.seed,
+                trace: self.recorder.on(),
+            };
+            workers.evaluate(&instant, &mut self.minds, &releases, &mut outcomes);
+            for (release, outcome) in releases.iter().zip(&mut outcomes) {
+                if let Some(desk) = workers.desks.get(outcome.log as usize) {
+                    self.commit(release, outcome, &desk.log);
+                }
+            }
+            for (param, registers) in std::mem::take(&mut self.new_params) {
+                if let Some(range) = self.mission.params.range(param as usize)
+                    && let Some(slot) = self.params.get_mut(range)
+                    && slot.len() == registers.len()
+                {
+                    slot.copy_from_slice(&registers);
+                }
+            }
+            self.workers = workers;
+            self.outcomes = outcomes;
+            if self.releases.is_empty() {
+                releases.clear();
+                self.releases = releases;
+            }
+        }
+    }
+
+    fn prepare_wave(&mut self, releases: &[Release]) {
+        if self.boards.is_empty() {
+            return;
+        }
+        let mission = self.mission;
+        let mut topics: Vec<u32> = Vec::new();
+        let mut robots: Vec<u32> = Vec::new();
+        for r in releases {
+            let info = &self.cast.units[r.unit as usize];
+            let who = &self.cast.instances[info.instance as usize];
+            let hears = &mission.agents[who.agent as usize].units[info.unit as usize].hears;
+            if hears.is_empty() {
+                continue;
+            }
+            topics.extend(hears.iter().filter(|t| !topics.contains(t)).copied().collect::<Vec<_>>());
+            if robots.last() != Some(&who.robot) {
+                robots.push(who.robot);
+            }
+        }
+        self.prepare(topics.into_iter(), robots.into_iter());
+    }
+
+    /// Judges what asks for contacts at the instant at which one began.
+    fn judge_contact(&mut self, at: Time) {
+        if self.mission.judge.expects.iter().any(|e| e.contacts) {
+            self.judge_expectations(at, Occasion::Contact);
+        }
+        self.contacts.judged();
+    }
+
+    /// Judges expectations; a fault ends the run.
+    pub(super) fn judge_expectations(&mut self, at: Time, occasion: Occasion) {
+        let mut judge = std::mem::take(&mut self.judge);
+        let result = judge.judge(&mut self.court(at), occasion);
+        for (index, watch) in judge.watches.iter_mut().enumerate() {
+            for (track, t) in watch.decided.drain(..) {
+                let each = self.mission.judge.expects[index].each_robot;
+                let track_ = &watch.tracks[track as usize];
+                let (held, margin) = (track_.held == Some(true), track_.margin());
+                self.recorder.record(t, None, || Event::Expectation {
+                    index: index as u32,
+                    robot: each.then_some(track),
+                    held,
+                    margin,
+                });
+            }
+        }
+        self.judge = judge;
+        if let Err(fault) = result {
+            self.fault(None, "expectation", &fault, None);
+        }
+    }
+
+    /// What conditions of the mission are about.
+    pub(super) fn court(&self, now: Time) -> Court<'_> {
+        Court {
+            mission: self.mission,
+            scene: self.scene,
+            cast: &self.cast,
+            states: &self.minds.states,
+            params: &self.params,
+            truth: self.platform.truth(),
+            contacts: &self.contacts,
+            goals: &self.goals,
+            regions: &self.regions,
+            now,
+            robot: None,
+        }
+    }
+
+    /// Goals, expectations, the done condition and the time limit; and whether something ends the run.
+    fn judge_instant(&mut self) -> Option<End> {
+        let now = self.now;
+        for (goal, status) in self.goals.changes() {
+            let name = self.mission.graph.goals[goal].name.to_string();
+            let status = status.to_string();
+            self.recorder.record(now, None, || Event::Goal { goal: name, robot: None, status });
+        }
+        self.judge_expectations(now, Occasion::Instant);
+        let mut frame = std::mem::take(&mut self.judge.frame);
+        let mission = self.mission;
+        let done = match self.court(now).number(&mission.judge.done, &mut frame) {
+            Ok(x) => x != 0.0,
+            Err(fault) => {
+                // Without world truth a condition about it is never met.
+                if self.platform.truth().is_some() {
+                    self.fault(None, "done condition", &fault, None);
+                }
+                false
+            }
+        };
+        self.judge.frame = frame;
+        if let Some(error) = &self.recorder.failed {
+            let reason = format!("the trace cannot be written: {error}");
+            return Some(End { outcome: Outcome::Aborted, reason });
+        }
+        if let Some(reason) = &self.aborted {
+            return Some(End { outcome: Outcome::Aborted, reason: reason.clone() });
+        }
+        if done {
+            return Some(End { outcome: Outcome::Success, reason: "done".into() });
+        }
+        if self.limit.is_some_and(|l| now >= l) {
+            let reason = format!("not done within {} s", now.seconds());
+            return Some(End { outcome: Outcome::Timeout, reason });
+        }
+        None
+    }
+}

@@ -1,0 +1,193 @@
+//! Judges the run: done condition, expectations and metrics, over world truth and beliefs.
+
+use super::{
+    cast::Cast,
+    contacts::Contacts,
+    goals::Goals,
+    regions::Regions,
+    verdict::{Answer, Track},
+};
+use crate::{
+    Mission, Scene, Time, WorldTruth,
+    mission::{code::Condition, start},
+};
+use soifra_graph::{
+    Own, Run, Truth,
+    eval::{Block, Env, Fault, FaultKind, Memory},
+};
+
+/// What conditions of the mission are about.
+pub(crate) struct Court<'a> {
+    pub mission: &'a Mission,
+    pub scene: &'a Scene,
+    pub cast: &'a Cast,
+    pub states: &'a [f64],
+    pub params: &'a [f64],
+    pub truth: Option<&'a dyn WorldTruth>,
+    pub contacts: &'a Contacts,
+    pub goals: &'a Goals,
+    pub regions: &'a Regions,
+    pub now: Time,
+    pub robot: Option<u32>,
+}
+
+impl Env for Court<'_> {
+    fn now(&self) -> Result<f64, FaultKind> {
+        Ok(self.now.seconds())
+    }
+
+    fn steps(&self) -> Result<f64, FaultKind> {
+        Ok(self.scene.step.map_or(0.0, |s| (self.now.0 / s.0.max(1)) as f64))
+    }
+
+    fn own(&self, which: Own, out: &mut [f64]) -> Result<(), FaultKind> {
+        let robot = self.robot.ok_or(FaultKind::Unavailable("the robot"))?;
+        start::own(self.scene, robot, which, out)
+    }
+
+    fn truth(&self, robot: u32, which: Truth, out: &mut [f64]) -> Result<(), FaultKind> {
+        let truth = self.truth.ok_or(FaultKind::Unavailable("world truth"))?;
+        if robot as usize >= self.scene.robots.len() {
+            return Err(FaultKind::Malformed);
+        }
+        let number = match which {
+            Truth::Pose => {
+                let pose = truth.pose(robot);
+                if out.len() != pose.len() {
+                    return Err(FaultKind::Malformed);
+                }
+                out.copy_from_slice(&pose);
+                return Ok(());
+            }
+            Truth::PathLength => truth.path_length(robot),
+            Truth::Collisions => f64::from(self.contacts.of_robot[robot as usize]),
+            Truth::InCollision => f64::from(u8::from(self.contacts.touches(robot))),
+        };
+        *out.first_mut().ok_or(FaultKind::Malformed)? = number;
+        Ok(())
+    }
+
+    fn run(&self, which: Run) -> Result<f64, FaultKind> {
+        Ok(match which {
+            Run::Collisions => f64::from(self.contacts.total),
+            Run::InCollision => f64::from(u8::from(self.contacts.any())),
+        })
+    }
+
+    fn believed(&self, robot: u32, agent: u32, state: u32, out: &mut [f64]) -> Result<(), FaultKind> {
+        let Some(i) = self.cast.find(robot, agent) else {
+            return Err(FaultKind::Unavailable("the state of an agent that the robot does not run"));
+        };
+        let layout = &self.mission.agents[agent as usize].states;
+        let range = layout.range(state as usize).ok_or(FaultKind::Malformed)?;
+        let base = self.cast.instances[i].states;
+        let value = self.states.get(base + range.start..base + range.end).ok_or(FaultKind::Malformed)?;
+        if value.len() != out.len() {
+            return Err(FaultKind::Malformed);
+        }
+        out.copy_from_slice(value);
+        Ok(())
+    }
+
+    fn achieved(&self, goal: u32) -> Result<bool, FaultKind> {
+        self.goals.achieved(goal).ok_or(FaultKind::Malformed)
+    }
+
+    fn robots(&self) -> Result<u32, FaultKind> {
+        Ok(self.scene.robots.len() as u32)
+    }
+
+    fn robot_of_group(&self, group: u32) -> Option<u32> {
+        self.scene.robots.iter().position(|r| r.group == group).map(|r| r as u32)
+    }
+
+    fn robot(&self) -> Option<u32> {
+        self.robot
+    }
+
+    fn set_robot(&mut self, robot: Option<u32>) {
+        self.robot = robot;
+    }
+
+    fn inside(&self, point: [f64; 3], region: u32) -> Result<bool, FaultKind> {
+        self.regions.inside(point, region)
+    }
+}
+
+impl Court<'_> {
+    /// The value of a block of one register.
+    pub fn number(&mut self, block: &Block, frame: &mut [f64]) -> Result<f64, Fault> {
+        let mission = self.mission;
+        let mut memory = Memory { states: &mut [], arguments: &[], params: self.params };
+        mission.program.run(block, frame, &mut memory, self)?;
+        Ok(frame.get(block.result as usize).copied().unwrap_or(0.0))
+    }
+
+    fn ask(&mut self, condition: &Condition, frame: &mut [f64]) -> Result<Answer, Fault> {
+        let holds = self.number(&condition.holds, frame)? != 0.0;
+        // A margin evaluates what the condition may have left out: a fault there is no fault of the mission.
+        let margin = condition.margin.and_then(|m| self.number(&m, frame).ok());
+        Ok(Answer { holds, margin })
+    }
+}
+
+/// An expectation and how far it has come.
+#[derive(Debug, Clone)]
+pub(crate) struct Watch {
+    /// One track, or one for each robot.
+    pub tracks: Vec<Track>,
+    /// The time the expectation gives.
+    pub limit: Option<Time>,
+    /// Whether it asks for world truth that nobody has.
+    pub blind: bool,
+    /// Decisions since they were asked for last: track and time.
+    pub decided: Vec<(u32, Time)>,
+}
+
+/// The expectations.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Judge {
+    pub watches: Vec<Watch>,
+    pub frame: Vec<f64>,
+}
+
+/// At which instants an expectation is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Occasion {
+    /// The end of an instant.
+    Instant,
+    /// A contact before it.
+    Contact,
+    /// The end of the run.
+    End,
+}
+
+impl Judge {
+    /// Judges all expectations. The court's robot is changed.
+    pub fn judge(&mut self, court: &mut Court<'_>, occasion: Occasion) -> Result<(), Fault> {
+        let mission = court.mission;
+        let now = court.now;
+        for (code, watch) in mission.judge.expects.iter().zip(&mut self.watches) {
+            if watch.blind || (occasion == Occasion::Contact && !code.contacts) {
+                continue;
+            }
+            for (r, track) in watch.tracks.iter_mut().enumerate() {
+                if occasion != Occasion::End && track.is_over(&code.kind) {
+                    continue;
+                }
+                court.robot = code.each_robot.then_some(r as u32);
+                let before = track.held;
+                let mut ask = |c: &Condition| court.ask(c, &mut self.frame);
+                match occasion {
+                    Occasion::End => track.end(&code.kind, watch.limit, now, &mut ask)?,
+                    _ => track.step(&code.kind, watch.limit, now, &mut ask)?,
+                }
+                if track.held != before {
+                    watch.decided.push((r as u32, now));
+                }
+            }
+        }
+        court.robot = None;
+        Ok(())
+    }
+}

@@ -1,0 +1,98 @@
+//! What an activation did, kept until it is committed in the deterministic order.
+
+use soifra_graph::{Name, Span};
+use std::ops::Range;
+
+/// Something an activation did, in order. Ranges are registers of the log.
+#[derive(Debug, Clone)]
+pub(crate) enum Item {
+    Command {
+        port: u32,
+        registers: Range<u32>,
+    },
+    Publish {
+        topic: u32,
+        registers: Range<u32>,
+    },
+    Tell(Box<Told>),
+    Raise(u32),
+    SetParam {
+        param: u32,
+        registers: Range<u32>,
+    },
+    /// A sub-goal of the agent has this status now.
+    Subgoal {
+        index: u32,
+        status: u8,
+    },
+    // For the trace only.
+    Note(Box<str>),
+    Rule {
+        rule: u32,
+        at: Span,
+    },
+    Transition {
+        from: u32,
+        to: u32,
+    },
+    Node {
+        node: u32,
+        result: &'static str,
+    },
+    State {
+        state: u32,
+        registers: Range<u32>,
+    },
+    /// The record of a message that was heard.
+    Heard(u64),
+}
+
+/// Content told to another agent.
+#[derive(Debug, Clone)]
+pub(crate) struct Told {
+    pub performative: Name,
+    pub to: Name,
+    pub content: Name,
+    pub registers: Range<u32>,
+}
+
+/// The items of consecutive activations.
+#[derive(Debug, Default)]
+pub(crate) struct Log {
+    pub items: Vec<Item>,
+    pub registers: Vec<f64>,
+}
+
+impl Log {
+    /// Keeps registers.
+    pub fn keep(&mut self, registers: &[f64]) -> Range<u32> {
+        let from = self.registers.len() as u32;
+        self.registers.extend_from_slice(registers);
+        from..self.registers.len() as u32
+    }
+
+    /// Registers of an item.
+    pub fn get(&self, range: &Range<u32>) -> &[f64] {
+        self.registers.get(range.start as usize..range.end as usize).unwrap_or_default()
+    }
+
+    /// Forgets everything, keeps the memory.
+    pub fn clear(&mut self) {
+        self.items.clear();
+        self.registers.clear();
+    }
+}
+
+impl Item {
+    /// Whether it leaves the agent, so that it appears when the activation finishes.
+    pub fn is_output(&self) -> bool {
+        matches!(
+            self,
+            Item::Command { .. }
+                | Item::Publish { .. }
+                | Item::Tell(_)
+                | Item::Raise(_)
+                | Item::SetParam { .. }
+        )
+    }
+}

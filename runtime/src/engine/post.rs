@@ -1,0 +1,55 @@
+//! Messages that are delivered, to units that a message sets off, and their mailboxes.
+
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::{BTreeMap, VecDeque},
+    sync::Arc,
+};
+
+/// A message on its way or in a mailbox.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Letter {
+    /// What it is called in the trace: the topic, or performative and content.
+    pub topic: String,
+    pub registers: Vec<f64>,
+    /// Its record.
+    pub record: u64,
+    /// Most letters that may wait in a mailbox.
+    pub capacity: usize,
+}
+
+/// A letter in a mailbox, with the record of its delivery.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Delivered {
+    pub letter: Arc<Letter>,
+    pub record: Option<u64>,
+}
+
+/// Mailboxes that are not empty, by unit.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Mail(BTreeMap<u32, VecDeque<Delivered>>);
+
+impl Mail {
+    /// Puts a letter into a mailbox; returns the oldest when the mailbox is full.
+    pub fn put(&mut self, unit: u32, letter: Delivered) -> Option<Delivered> {
+        let capacity = letter.letter.capacity.max(1);
+        let waiting = self.0.entry(unit).or_default();
+        waiting.push_back(letter);
+        if waiting.len() > capacity { waiting.pop_front() } else { None }
+    }
+
+    /// Takes the oldest letter.
+    pub fn take(&mut self, unit: u32) -> Option<Delivered> {
+        let waiting = self.0.get_mut(&unit)?;
+        let letter = waiting.pop_front();
+        if waiting.is_empty() {
+            self.0.remove(&unit);
+        }
+        letter
+    }
+
+    /// Whether letters wait.
+    pub fn waits(&self, unit: u32) -> bool {
+        self.0.contains_key(&unit)
+    }
+}
