@@ -7,6 +7,7 @@ pub mod engine;
 pub mod mission;
 pub mod nodes;
 pub mod ports;
+pub mod replay;
 pub mod scene;
 pub mod seed;
 pub mod time;

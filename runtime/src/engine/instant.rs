@@ -70,7 +70,7 @@ impl Engine<'_> {
         self.contacts_begin_and_end(&reports, before);
         for report in &reports {
             if let Report::Lost { robot, reason, .. } = report {
-                let text = format!("the platform is lost: {reason}");
+                let text = format!("{}{reason}", super::report::LOST);
                 self.fail(Some(*robot), super::report::PLATFORM, text, None);
             }
         }

@@ -62,6 +62,9 @@ pub const INTERRUPTED: &str = "interrupted";
 /// Stands for the agent in records of a lost platform.
 pub const PLATFORM: &str = "platform";
 
+/// How the text of such a record begins; the platform's reason follows.
+pub const LOST: &str = "the platform is lost: ";
+
 impl RunReport {
     /// Whether the operator stopped it.
     pub fn interrupted(&self) -> bool {

@@ -313,7 +313,10 @@ fn plan(c: &mut Compiler<'_>, scope: &mut Scope, nodes: &[PlanNode], at: Span) -
     let tree = match Tree::new(&parts) {
         Ok(tree) => tree,
         Err(e) => {
-            return damaged(nodes.get(e.node).map_or(at, |n| n.at), format!("{e} (at most {MAX_DEPTH} deep)"));
+            return damaged(
+                nodes.get(e.node).map_or(at, |n| n.at),
+                format!("{e} (at most {MAX_DEPTH} deep)"),
+            );
         }
     };
     Ok(PlanCode { prelude: None, tree, code, nodes_at: 0, subgoal: None })
