@@ -79,11 +79,13 @@ pub(super) fn axes(drawing: &mut Drawing, scene: &Scene) {
         drawing.line(&[[x, bottom], [x, bottom + 5.0]], stroked(DARK, 1.2));
         drawing.text([x, bottom + 19.5], Align::Middle, SMALL, false, &label);
     }
+    let mut widest: f64 = 0.0;
     for (y, label) in view.ticks(1, unit, step) {
+        widest = widest.max(font::width(&label, SMALL.size));
         drawing.line(&[[LEFT - 5.0, y], [LEFT, y]], stroked(DARK, 1.2));
         drawing.text([LEFT - 11.0, y + SMALL.size / 2.0], Align::End, SMALL, false, &label);
     }
     let name = |axis: &str| format!("{axis} ({})", unit.name);
     drawing.text([(LEFT + right) / 2.0, bottom + 42.0], Align::Middle, SMALL, false, &name("x"));
-    drawing.text([LEFT - 52.0, (TOP + bottom) / 2.0], Align::Middle, SMALL, true, &name("y"));
+    drawing.text([LEFT - 11.0 - widest - 14.0, (TOP + bottom) / 2.0], Align::Middle, SMALL, true, &name("y"));
 }

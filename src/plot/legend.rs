@@ -25,13 +25,13 @@ fn entries(scene: &Scene) -> Vec<Entry> {
     let has = |role: &str| scene.header.scene.world.iter().any(|p| &*p.role == role);
     let mut entries: Vec<Entry> = Vec::new();
     if !scene.header.scene.robots.is_empty() {
-        entries.push((|d, at| world::start(d, at, MILD), "start"));
+        entries.push((|d, at| world::start(d, at, 1.0, MILD), "start"));
     }
     if !scene.tracks.robots.is_empty() {
         entries.push((|d, at| world::body(d, at, 6.0, 0.0, MILD), "end, with heading"));
     }
     if scene.header.scene.robots.iter().any(|r| r.target.is_some()) {
-        entries.push((|d, at| world::target(d, at, MILD), "target"));
+        entries.push((|d, at| world::target(d, at, 1.0, MILD), "target"));
     }
     if !scene.tracks.movers.is_empty() {
         entries.push((

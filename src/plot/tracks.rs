@@ -1,11 +1,9 @@
 //! What of a trace is in the picture: where everything was, what touched, how it ended.
 
+use super::view::in_sight;
 use crate::trace_file::shape;
 use soifra_runtime::{Event, Record, Time};
 use std::collections::BTreeMap;
-
-/// Coordinates beyond this are not drawn: nothing in a world is a million kilometres away.
-const FAR: f64 = 1e9;
 
 /// Everything gathered from the records.
 #[derive(Debug, Default)]
@@ -52,7 +50,7 @@ impl Tracks {
 
 impl Track {
     fn take(&mut self, t: Time, pose: &[f64; 7]) {
-        if pose.iter().any(|x| !x.is_finite() || x.abs() > FAR) {
+        if !in_sight(pose) {
             return;
         }
         let at = [pose[0], pose[1]];
@@ -83,10 +81,19 @@ impl Track {
     }
 }
 
-/// The fewest of `points` whose polyline is nowhere farther than `tolerance` from all of them (Douglas
-/// and Peucker, "Algorithms for the reduction of the number of points required to represent a digitized
-/// line", 1973).
+/// Few of `points` whose polyline is nowhere farther than `tolerance` from all of them (Douglas and
+/// Peucker, "Algorithms for the reduction of the number of points required to represent a digitized line",
+/// 1973).
 pub(super) fn simplify(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
+    // First what hardly moved: a resting robot must not cost more than one that drives.
+    let mut moved: Vec<[f64; 2]> = Vec::new();
+    for (i, p) in points.iter().enumerate() {
+        let far = moved.last().is_none_or(|q| libm::hypot(p[0] - q[0], p[1] - q[1]) > tolerance / 4.0);
+        if far || i + 1 == points.len() {
+            moved.push(*p);
+        }
+    }
+    let points = &moved[..];
     let mut keep = vec![false; points.len()];
     let mut pending = Vec::new();
     if let Some(last) = points.len().checked_sub(1) {

@@ -22,6 +22,12 @@ pub(super) struct Unit {
     pub metres: f64,
 }
 
+/// Whether places or sizes can be drawn: they are numbers, and nothing in a world is a million kilometres
+/// away.
+pub(super) fn in_sight(metres: &[f64]) -> bool {
+    metres.iter().all(|x| x.abs() < 1e9)
+}
+
 /// A smallest rectangle around points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
@@ -35,8 +41,8 @@ impl Extent {
 
     /// Grows to hold a disc (a point when it has no radius).
     pub(super) fn take(&mut self, at: [f64; 2], radius: f64) {
-        for i in 0..2 {
-            if at[i].is_finite() && radius.is_finite() && at[i].abs() < 1e9 {
+        if in_sight(&at) && in_sight(&[radius]) {
+            for i in 0..2 {
                 self.low[i] = f64::min(self.low[i], at[i] - radius);
                 self.high[i] = f64::max(self.high[i], at[i] + radius);
             }

@@ -5,6 +5,7 @@ use super::{
     drawing::{Color, Drawing, Style, faint, filled, ink, stroked},
     frame::{DARK, MILD},
     tracks::simplify,
+    view::in_sight,
 };
 use crate::trace_file::{
     Header, palette,
@@ -37,7 +38,7 @@ pub(super) fn corners(shape: &Shape) -> Vec<[f64; 2]> {
 /// Radius of a mover in metres.
 pub(super) fn mover_radius(header: &Header, name: &str) -> f64 {
     let part = header.scene.world.iter().find(|p| &*p.role == "mover" && p.name == name);
-    part.and_then(shape::mover_body).map_or(0.0, |b| b.radius)
+    part.and_then(shape::mover_body).map_or(0.0, |b| b.radius).clamp(0.0, 1e9)
 }
 
 pub(super) fn region_style() -> Style {
@@ -57,20 +58,21 @@ pub(super) fn mover_style() -> Style {
 }
 
 pub(super) fn mover_track_style() -> Style {
-    Style::default().outline(faint(MOVER, 0.6), 1.6).dashed(5.0)
+    Style::default().outline(faint(MOVER, 0.5), 1.6)
 }
 
 fn add(drawing: &mut Drawing, scene: &Scene, shape: &Shape, style: Style) {
     let view = &scene.view;
     match shape {
-        // Never smaller than can be seen.
-        Shape::Cylinder { at, radius, .. } => {
+        Shape::Cylinder { at, radius, .. } if in_sight(at) && in_sight(&[*radius]) => {
+            // Never smaller than can be seen.
             drawing.circle(view.place([at[0], at[1]]), f64::max(radius.abs() * view.scale, 1.5), style);
         }
-        Shape::Box { .. } => {
+        Shape::Box { at, size, .. } if in_sight(at) && in_sight(size) => {
             let corners: Vec<_> = corners(shape).into_iter().map(|c| view.place(c)).collect();
             drawing.polygon(&corners, style);
         }
+        _ => {}
     }
 }
 
@@ -110,13 +112,15 @@ pub(super) fn movers(drawing: &mut Drawing, scene: &Scene) {
     }
 }
 
-/// Paths below, then starts, bodies and targets.
+/// Paths below, then starts and targets, then bodies, through which a reached target shows.
 pub(super) fn robots(drawing: &mut Drawing, scene: &Scene) {
     let (view, robots) = (&scene.view, &scene.header.scene.robots);
+    // Many robots are drawn finer.
+    let grain = if robots.len() > 60 { 0.5 } else { 1.0 };
     for (i, track) in &scene.tracks.robots {
         let color = palette::robot(*i);
         let mut places: Vec<_> = track.points.iter().map(|(_, p)| view.place(*p)).collect();
-        drawing.line(&simplify(&places, TOLERANCE), path_style(color));
+        drawing.line(&simplify(&places, TOLERANCE), stroked(color, 1.9 * grain));
         places.dedup();
         if places.len() <= STEPS {
             // Dots that run into each other say nothing.
@@ -130,18 +134,20 @@ pub(super) fn robots(drawing: &mut Drawing, scene: &Scene) {
         }
     }
     for (i, robot) in robots.iter().enumerate() {
-        let track = scene.tracks.robots.get(&i);
-        let first = track.and_then(|t| t.points.first()).map_or([robot.start[0], robot.start[1]], |p| p.1);
-        let color = palette::robot(i);
-        start(drawing, view.place(first), color);
-        if let Some((track, end)) = track.and_then(|t| Some((t, t.end()?))) {
-            let radius = f64::max(shape::robot_body(&scene.header.scene, i).radius * view.scale, 4.0);
-            body(drawing, view.place(end), radius, track.heading, color);
+        let (first, color) = (scene.tracks.robots.get(&i).and_then(|t| t.points.first()), palette::robot(i));
+        let first = first.map_or([robot.start[0], robot.start[1]], |p| p.1);
+        if in_sight(&first) {
+            start(drawing, view.place(first), grain, color);
+        }
+        if let Some(t) = robot.target.filter(|t| in_sight(t)) {
+            target(drawing, view.place([t[0], t[1]]), grain, color);
         }
     }
-    for (i, robot) in robots.iter().enumerate() {
-        if let Some(t) = robot.target {
-            target(drawing, view.place([t[0], t[1]]), palette::robot(i));
+    for (i, track) in &scene.tracks.robots {
+        if let Some(end) = track.end() {
+            let radius = shape::robot_body(&scene.header.scene, *i).radius * view.scale;
+            let radius = radius.clamp(4.0 * grain, 1e4);
+            body(drawing, view.place(end), radius, track.heading, palette::robot(*i));
         }
     }
 }
@@ -151,20 +157,23 @@ pub(super) fn path_style(color: Color) -> Style {
 }
 
 /// A ring.
-pub(super) fn start(drawing: &mut Drawing, at: [f64; 2], color: Color) {
-    drawing.circle(at, 4.6, filled(ink(WHITE)).outline(ink(color), 2.0));
+pub(super) fn start(drawing: &mut Drawing, at: [f64; 2], grain: f64, color: Color) {
+    drawing.circle(at, 4.6 * grain, filled(ink(WHITE)).outline(ink(color), 2.0 * grain));
 }
 
-/// A disc with a tick to where it faces.
+/// A disc with a tick, beyond its rim, to where it faces.
 pub(super) fn body(drawing: &mut Drawing, at: [f64; 2], radius: f64, heading: f64, color: Color) {
     drawing.circle(at, radius, filled(faint(color, 0.35)).outline(ink(color), 1.6));
-    let rim = [at[0] + radius * libm::cos(heading), at[1] - radius * libm::sin(heading)];
-    drawing.line(&[at, rim], stroked(DARK, 1.8));
+    let tip = f64::max(1.3 * radius, f64::min(radius + 3.0, 2.0 * radius));
+    let [from, to] =
+        [0.55 * radius, tip].map(|r| [at[0] + r * libm::cos(heading), at[1] - r * libm::sin(heading)]);
+    drawing.line(&[from, to], stroked(DARK, 2.0));
 }
 
 /// An upright cross.
-pub(super) fn target(drawing: &mut Drawing, [x, y]: [f64; 2], color: Color) {
-    for (style, reach) in [(stroked(WHITE, 4.4), 6.5), (stroked(color, 2.0), 6.5)] {
+pub(super) fn target(drawing: &mut Drawing, [x, y]: [f64; 2], grain: f64, color: Color) {
+    let reach = 6.0 * grain;
+    for style in [stroked(WHITE, 4.4 * grain), stroked(color, 2.0 * grain)] {
         drawing.line(&[[x - reach, y], [x + reach, y]], style);
         drawing.line(&[[x, y - reach], [x, y + reach]], style);
     }
