@@ -1,12 +1,48 @@
 //! What can be known before anything moves: checks on the graph, one file for each question. They run on
-//! graphs from sources and from files alike.
+//! graphs from sources and from graph files alike.
 
+mod arbitration;
+mod capability;
+mod clock;
+mod events;
+mod goals;
+mod knowledge;
+mod placement;
+mod reachability;
+mod timing;
+mod topics;
+mod types;
 pub mod walk;
 
 use soifra_graph::{Diagnostic, Graph};
 
-/// All checks.
+/// All checks, in the order of what the later ones take for granted: types first, since a graph file may
+/// hold anything; a graph whose parts do not fit together is not looked at further.
 pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
-    let _ = graph;
-    Vec::new()
+    let mut out = types::check(graph);
+    if !out.is_empty() {
+        return out;
+    }
+    out.extend(knowledge::check(graph));
+    out.extend(goals::check(graph));
+    out.extend(capability::check(graph));
+    out.extend(clock::check(graph));
+    out.extend(arbitration::check(graph));
+    out.extend(reachability::check(graph));
+    out.extend(topics::check(graph));
+    out.extend(events::check(graph));
+    out.extend(timing::check(graph));
+    out.extend(placement::check(graph));
+    out
+}
+
+/// Agents that some robot runs, by index.
+fn used_agents(graph: &Graph) -> Vec<bool> {
+    let mut used = vec![false; graph.agents.len()];
+    for b in graph.robots.iter().flat_map(|r| &r.agents) {
+        if let Some(u) = used.get_mut(b.agent as usize) {
+            *u = true;
+        }
+    }
+    used
 }

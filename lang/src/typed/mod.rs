@@ -246,11 +246,12 @@ impl<'a> Checker<'a> {
         if let Some(v) = e.as_const() {
             return Some(v.clone());
         }
+        let locals: Vec<(Type, Option<soifra_graph::Value>)> = e.local_types(&[]).into_iter().map(|t| (t, None)).collect();
         let known = soifra_graph::eval::Known {
             types: &self.types,
             functions: &self.functions,
             params: &[],
-            locals: &[],
+            locals: &locals,
         };
         match soifra_graph::eval::constant(e, &known, &mut self.texts) {
             Ok(v) => Some(v),

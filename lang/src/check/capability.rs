@@ -1,0 +1,87 @@
+//! Has every platform the sensors, actuators and parts that its robots' agents need?
+
+use crate::{code, decls::unknown};
+use soifra_graph::{Agent, AgentBinding, Diagnostic, Graph, Platform, Port, RobotGroup, Type};
+
+/// Checks every robot against its platform, and every platform by itself.
+pub fn check(g: &Graph) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    for p in &g.platforms {
+        complete(p, &mut out);
+    }
+    for r in &g.robots {
+        let Some(p) = g.platforms.get(r.platform as usize) else { continue };
+        for b in &r.agents {
+            let Some(a) = g.agents.get(b.agent as usize) else { continue };
+            for port in &a.sensors {
+                port_on(a, b, r, p, port, "sensor", code::LACKS_SENSOR, &mut out);
+            }
+            for port in &a.actuators {
+                port_on(a, b, r, p, port, "actuator", code::LACKS_ACTUATOR, &mut out);
+            }
+        }
+    }
+    // One port that many robots lack is one mistake.
+    let mut seen = std::collections::BTreeSet::new();
+    out.retain(|d| seen.insert((d.code, d.position())));
+    out
+}
+
+fn complete(p: &Platform, out: &mut Vec<Diagnostic>) {
+    if p.of_role("safe").next().is_none() {
+        out.push(
+            Diagnostic::error(code::NO_SAFE_ACTION, format!("`{}` has no safe action", p.name))
+                .at(p.at, "what should it do when in doubt?")
+                .hint("add `safe = stop()`"),
+        );
+    }
+    for role in ["body", "drive"] {
+        if p.of_role(role).next().is_none() {
+            out.push(
+                Diagnostic::error(code::INCOMPLETE_PLATFORM, format!("`{}` has no {role}", p.name))
+                    .at(p.at, format!("no `{role} = …` here"))
+                    .hint(format!("add one; the models are listed under `{role}` in docs/language.md")),
+            );
+        }
+    }
+}
+
+#[allow(clippy::too_many_arguments, reason = "one call site a kind of port; a struct would only rename them, 2026-11")]
+fn port_on(a: &Agent, b: &AgentBinding, r: &RobotGroup, p: &Platform, port: &Port, role: &str, lacks: &'static str, out: &mut Vec<Diagnostic>) {
+    match p.of_role(role).find(|c| c.name == port.name) {
+        None => {
+            let same: Vec<&str> = p.of_role(role).filter(|c| c.ty.as_ref().is_some_and(|t| fits(t, &port.ty))).map(|c| &*c.name).collect();
+            let all: Vec<&str> = p.of_role(role).map(|c| &*c.name).collect();
+            let mut d = unknown(lacks, &format!("{role} on {}:", p.name), &port.name, port.span, all.iter().copied());
+            d.title = format!("`{}` on `{}` has no {role} `{}`", r.name, p.name, port.name);
+            d.labels[0].text = format!("`{}` needs it", a.name);
+            let d = d.at(b.at, format!("`{}` runs it", r.name));
+            out.push(match same.as_slice() {
+                [] => match all.as_slice() {
+                    [] => d.hint(format!("the platform has none; choose another platform, or add `{role} {} = …` to its profile", port.name)),
+                    _ => d,
+                },
+                list => d.hint(format!("of that type it has {}", list.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", "))),
+            });
+        }
+        Some(c) => {
+            let Some(have) = &c.ty else { return };
+            if !fits(have, &port.ty) {
+                out.push(
+                    Diagnostic::error(code::PORT_TYPE, format!("{role} `{}` of `{}` has another type", port.name, p.name))
+                        .at(port.span, format!("{} is wanted", port.ty))
+                        .at(c.at, format!("{have} is what it gives"))
+                        .hint(format!("declare `{role} {}: {have}` in the agent, or choose a platform that fits", port.name)),
+                );
+            }
+        }
+    }
+}
+
+/// Whether readings of type `have` can be handed to a port of type `want`.
+fn fits(have: &Type, want: &Type) -> bool {
+    match (have, want) {
+        (Type::List(a, n), Type::List(b, m)) => a == b && n <= m,
+        _ => have == want,
+    }
+}
