@@ -1,0 +1,12 @@
+//! The runtime from the outside: missions written in the language, on a scripted platform.
+
+mod arbitration;
+mod determinism;
+mod expectations;
+mod faults;
+mod machines;
+mod plans;
+mod replay;
+mod scheduling;
+mod support;
+mod topics;
