@@ -16,9 +16,9 @@ pub(super) type Compiled<T> = Result<T, Box<CompileError>>;
 /// Takes expressions one by one.
 type Visit<'v> = dyn FnMut(&Expr) + 'v;
 
-/// How deep the compiler recurses: at most twice for each of the 2048 nodes that an expression of a
-/// graph file nests.
-pub(super) const MAX_DEPTH: u32 = 4200;
+/// How deep expressions and statements may nest: 2048 sums, as in a graph file, or fewer of the operators
+/// for which the compiler needs more of the stack. So it gets by with the 2 MB a thread has.
+pub(super) const MAX_DEPTH: u32 = 2048;
 
 /// Compiled code with its place in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,8 +83,19 @@ pub(super) struct Fetched {
     pub width: u32,
     pub span: Span,
     pub optional: bool,
+    /// How often the block names it.
+    pub uses: u32,
+    /// For what is named more than once: a register that is not 0 once it has been fetched.
+    pub flag: Option<u32>,
     /// Whether the instructions so far have fetched it on every way that leads here.
     pub done: bool,
+}
+
+impl Fetched {
+    fn new(e: &Expr) -> Self {
+        let (op, ty, span) = (e.op.clone(), e.ty.clone(), e.span);
+        Fetched { op, ty, at: 0, width: 0, span, optional: false, uses: 1, flag: None, done: false }
+    }
 }
 
 /// The block or function that is being compiled.
@@ -292,10 +303,10 @@ impl<'g> Compiler<'g> {
         let mut read: Vec<Fetched> = Vec::new();
         walk(&mut |e| match &e.op {
             Op::Call(f) => called.push((*f, e.span)),
-            Op::Reading(_) | Op::Heard(_) if read.iter().all(|r| r.op != e.op) => {
-                let (op, ty, span) = (e.op.clone(), e.ty.clone(), e.span);
-                read.push(Fetched { op, ty, at: 0, width: 0, span, optional: false, done: false });
-            }
+            Op::Reading(_) | Op::Heard(_) => match read.iter_mut().find(|r| r.op == e.op) {
+                Some(r) => r.uses += 1,
+                None => read.push(Fetched::new(e)),
+            },
             _ => {}
         });
         for (f, at) in called {
@@ -329,6 +340,11 @@ impl<'g> Compiler<'g> {
             r.optional = self.check_fetched(&r.op, &r.ty, r.span)?;
             r.width = self.width(&r.ty, r.span)?;
             r.at = self.alloc(r.width, r.span)?;
+            if r.uses > 1 {
+                let flag = self.alloc(1, r.span)?;
+                self.constant_into(flag, 0.0, r.span);
+                r.flag = Some(flag);
+            }
             self.body.fetched.push(r);
         }
         Ok(())
@@ -542,6 +558,7 @@ impl<'g> Compiler<'g> {
 const MAX_CALLS: u32 = 64;
 
 /// A refusal.
+#[cold]
 pub(super) fn error<T>(at: Span, text: impl Into<String>) -> Compiled<T> {
     Err(Box::new(CompileError::new(at, text)))
 }

@@ -6,6 +6,7 @@ use super::compile_expr::{arguments, gives};
 use crate::{Expr, Function, Type, pattern::Bindings};
 
 impl Compiler<'_> {
+    #[inline(never)]
     pub(super) fn gen_builtin(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
         use Function as F;
         match f {
@@ -124,6 +125,7 @@ impl Compiler<'_> {
     }
 
     /// Functions that ask the surroundings.
+    #[inline(never)]
     fn gen_env_function(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
         self.check_call(e, f)?;
         self.body.variable += 1;
@@ -140,6 +142,7 @@ impl Compiler<'_> {
     }
 
     /// Checks arguments and type of a call against the function's signature; returns the type.
+    #[inline(never)]
     fn check_call(&mut self, e: &Expr, f: Function) -> Compiled<Type> {
         let signature = f.signature();
         if signature.parameters.len() != e.args.len() {

@@ -16,6 +16,15 @@ use crate::{Expr, Own, Part, Run, Span, Truth, Type, Value, expr::Op, reason, ty
 const FOLD_WIDTH: u32 = 4096;
 const FOLD_FRAME: u32 = 1 << 16;
 
+/// How much of the stack the compiler needs for an operator, relative to a sum.
+fn weight(op: &Op) -> u32 {
+    match op {
+        Op::IfSome { .. } | Op::List(..) | Op::Fold(..) => 3,
+        Op::Switch { .. } | Op::Quantified(_) | Op::If | Op::Let(_) => 2,
+        _ => 1,
+    }
+}
+
 /// An operand of an instruction.
 pub(super) enum Operand {
     /// A register.
@@ -50,23 +59,40 @@ fn fits(e: &Expr, wanted: &Type) -> Compiled<()> {
 impl Compiler<'_> {
     /// Code for `e`; see the module.
     pub(super) fn generate(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
-        if self.body.depth >= MAX_DEPTH {
+        let weight = weight(&e.op);
+        if self.body.depth + weight > MAX_DEPTH {
             return error(e.span, "this nests too deep");
         }
-        self.body.depth += 1;
+        self.body.depth += weight;
         let (start, variable, cost, top) = (self.here(), self.body.variable, self.body.cost, self.body.top);
         let place = self.dispatch(e, dest)?;
-        self.body.depth -= 1;
-        if variable == self.body.variable
-            && self.here() > start
-            && let Some(folded) = self.fold(&e.ty, start, place, e.span)
-        {
-            self.body.cost = cost;
-            self.body.top = top;
-            let n = self.width(&e.ty, e.span)?;
-            return Ok(self.settle(folded, dest, n, e.span));
+        self.body.depth -= weight;
+        if variable == self.body.variable && self.here() > start {
+            return self.folded(e, start, place, cost, top, dest);
         }
         Ok(place)
+    }
+
+    /// The value of constant code from `start` instead of that code, when it has one.
+    #[inline(never)]
+    fn folded(
+        &mut self,
+        e: &Expr,
+        start: u32,
+        place: Place,
+        cost: u64,
+        top: u32,
+        dest: Option<u32>,
+    ) -> Compiled<Place> {
+        match self.fold(&e.ty, start, place, e.span) {
+            Some(folded) => {
+                self.body.cost = cost;
+                self.body.top = top;
+                let n = self.width(&e.ty, e.span)?;
+                Ok(self.settle(folded, dest, n, e.span))
+            }
+            None => Ok(place),
+        }
     }
 
     /// Code for `e` in the layout of `wanted`, which may be an optional of its type or a longer list.
@@ -98,6 +124,7 @@ impl Compiler<'_> {
 
     /// Runs the code from `start`, which depends on nothing, and takes it back for its value. When it
     /// faults it stays: the fault belongs to the run.
+    #[inline(never)]
     fn fold(&mut self, t: &Type, start: u32, place: Place, at: Span) -> Option<Place> {
         let n = self.width(t, at).ok()?;
         if n > FOLD_WIDTH || self.body.peak > FOLD_FRAME {
@@ -243,6 +270,7 @@ impl Compiler<'_> {
         }
     }
 
+    #[inline(never)]
     fn gen_const(&mut self, e: &Expr, value: &Value, dest: Option<u32>) -> Compiled<Place> {
         arguments::<0>(e)?;
         let n = self.width(&e.ty, e.span)?;
@@ -262,6 +290,7 @@ impl Compiler<'_> {
         Ok(self.settle(Place { space: Space::Constants, at }, dest, n, e.span))
     }
 
+    #[inline(never)]
     fn gen_slot(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         arguments::<0>(e)?;
         if let Op::Local(i) = e.op {
@@ -296,6 +325,7 @@ impl Compiler<'_> {
     }
 
     /// Checks the type of a reading or of what is heard; returns whether the reading is optional.
+    #[inline(never)]
     pub(super) fn check_fetched(&self, op: &Op, t: &Type, at: Span) -> Compiled<bool> {
         match (op, t) {
             (Op::Reading(i), _) => {
@@ -324,6 +354,7 @@ impl Compiler<'_> {
         }
     }
 
+    #[inline(never)]
     fn gen_fetched(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         arguments::<0>(e)?;
         self.body.variable += 1;
@@ -344,13 +375,22 @@ impl Compiler<'_> {
             return;
         };
         f.done = true;
-        let (d, n, span) = (f.at, f.width, f.span);
+        let (d, n, span, flag) = (f.at, f.width, f.span, f.flag);
         let instr = match f.op {
             Op::Heard(topic) => Instr::Heard { d, topic, n },
             Op::Reading(port) => Instr::Reading { optional: f.optional, d, port, n },
             _ => return,
         };
+        // On some way that leads here it may have been fetched.
+        let mut fetched = Vec::new();
+        if let Some(a) = flag {
+            self.jump(Instr::JumpIf { a, to: 0 }, &mut fetched, span);
+        }
         self.emit(instr, span);
+        if let Some(flag) = flag {
+            self.constant_into(flag, 1.0, span);
+        }
+        self.land(&fetched);
     }
 
     /// Fetches, before a loop, what its body reads.
@@ -371,6 +411,7 @@ impl Compiler<'_> {
         }
     }
 
+    #[inline(never)]
     fn gen_question(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         arguments::<0>(e)?;
         self.body.variable += 1;
@@ -412,6 +453,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     fn gen_call(&mut self, e: &Expr, function: u32, dest: Option<u32>) -> Compiled<Place> {
         let index = match self.compiled.get(&function) {
             Some(Ok(index)) => *index,
@@ -443,6 +485,7 @@ impl Compiler<'_> {
         Ok(self.settle(Place::frame(base + code.result), dest, n, e.span))
     }
 
+    #[inline(never)]
     fn gen_make(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         let n = self.width(&e.ty, e.span)?;
         let d = self.dest(dest, n, e.span)?;
@@ -497,6 +540,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     fn gen_field(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         let [of] = arguments(e)?;
         let (offset, t) = self.offset(e, of)?;
@@ -507,6 +551,7 @@ impl Compiler<'_> {
     }
 
     /// Where in `of` the part lies that `e` takes, and its type.
+    #[inline(never)]
     fn offset(&mut self, e: &Expr, of: &Expr) -> Compiled<(u32, Type)> {
         match (&e.op, &of.ty) {
             (Op::Field(i), Type::Record(name)) => {
@@ -531,6 +576,7 @@ impl Compiler<'_> {
         }
     }
 
+    #[inline(never)]
     fn gen_part(&mut self, e: &Expr, part: Part, dest: Option<u32>) -> Compiled<Place> {
         let [of] = arguments(e)?;
         if !matches!((part, &of.ty), (Part::Heading | Part::Roll | Part::Pitch, Type::Pose(_))) {
@@ -550,6 +596,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     fn gen_matrix(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         let [of] = arguments(e)?;
         let Type::Matrix(r, c) = of.ty else {
@@ -586,6 +633,7 @@ impl Compiler<'_> {
     }
 
     /// Offset and width of the part of a local that `e` is, if it is one.
+    #[inline(never)]
     fn path(&mut self, e: &Expr, local: u32) -> Compiled<Option<(u32, u32)>> {
         let (mut at, mut offset) = (e, 0);
         loop {

@@ -33,6 +33,7 @@ impl Compiler<'_> {
     }
 
     /// A list that a loop goes through with its items in `local`.
+    #[inline(never)]
     fn looped(&mut self, e: &Expr, local: u32, body: &Expr) -> Compiled<ListRef> {
         let mut list = self.list(e)?;
         let (item, t) = self.local(local, e.span)?;
@@ -71,6 +72,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
+    #[inline(never)]
     pub(super) fn gen_list(
         &mut self,
         e: &Expr,
@@ -160,6 +162,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     pub(super) fn gen_fold(&mut self, e: &Expr, acc: u32, item: u32, dest: Option<u32>) -> Compiled<Place> {
         let [of, initial, body] = arguments(e)?;
         let (register, t) = self.local(acc, e.span)?;
@@ -189,6 +192,7 @@ impl Compiler<'_> {
     }
 
     /// Functions whose first argument is a list.
+    #[inline(never)]
     pub(super) fn gen_list_function(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
         let Some((of, args)) = e.args.split_first() else {
             return error(e.span, "a list is wanted here");

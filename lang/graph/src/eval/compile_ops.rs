@@ -8,6 +8,7 @@ use super::widths::same_layout;
 use crate::{Binary, Expr, Quantifier, Span, Type, expr::Op, typing};
 
 impl Compiler<'_> {
+    #[inline(never)]
     pub(super) fn gen_binary(&mut self, e: &Expr, op: Binary, dest: Option<u32>) -> Compiled<Place> {
         let [l, r] = arguments(e)?;
         let Some(t) = typing::binary(op, &l.ty, &r.ty) else {
@@ -27,6 +28,7 @@ impl Compiler<'_> {
     }
 
     /// A truth value by jumps.
+    #[inline(never)]
     fn gen_logical(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         let d = self.dest(dest, 1, e.span)?;
         let top = self.body.top;
@@ -41,6 +43,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     fn gen_compare(
         &mut self,
         at: Span,
@@ -78,6 +81,7 @@ impl Compiler<'_> {
         Ok((self.operand(l)?, self.operand(r)?))
     }
 
+    #[inline(never)]
     fn gen_equal(&mut self, e: &Expr, n: u32, dest: Option<u32>) -> Compiled<Place> {
         let [l, r] = arguments(e)?;
         let Ok(n) = u8::try_from(n) else {
@@ -97,6 +101,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     fn gen_sum(&mut self, e: &Expr, op: Binary, dest: Option<u32>) -> Compiled<Place> {
         let [l, r] = arguments(e)?;
         let add = op == Binary::Add;
@@ -163,6 +168,7 @@ impl Compiler<'_> {
         u16::try_from(n).or_else(|_| error(at, "too wide a value"))
     }
 
+    #[inline(never)]
     fn gen_wide_sum(&mut self, e: &Expr, add: bool, dest: Option<u32>) -> Compiled<Place> {
         let [l, r] = arguments(e)?;
         let n = self.wide(&l.ty, l.span)?;
@@ -183,6 +189,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     fn gen_product(&mut self, e: &Expr, op: Binary, dest: Option<u32>) -> Compiled<Place> {
         let [l, r] = arguments(e)?;
         let (wl, wr) = (typing::number(&l.ty).is_none(), typing::number(&r.ty).is_none());
@@ -212,6 +219,7 @@ impl Compiler<'_> {
         })
     }
 
+    #[inline(never)]
     fn gen_wide_product(&mut self, e: &Expr, op: Binary, dest: Option<u32>) -> Compiled<Place> {
         let [l, r] = arguments(e)?;
         let n = self.wide(&e.ty, e.span)?;
@@ -242,6 +250,7 @@ impl Compiler<'_> {
     }
 
     /// Square root, power, minus, dot product.
+    #[inline(never)]
     pub(super) fn gen_arithmetic(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         if e.op == Op::Dot {
             let [l, r] = arguments(e)?;
@@ -283,6 +292,7 @@ impl Compiler<'_> {
         })
     }
 
+    #[inline(never)]
     pub(super) fn gen_not(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         let [of] = arguments(e)?;
         gives(e, &Type::Bool)?;
@@ -304,6 +314,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
+    #[inline(never)]
     fn branch_within(&mut self, e: &Expr, when: bool, jumps: &mut Vec<u32>) -> Compiled<()> {
         match (&e.op, e.args.as_slice()) {
             (Op::Not, [of]) => return self.branch(of, !when, jumps),
@@ -344,7 +355,11 @@ impl Compiler<'_> {
             }
             _ => {}
         }
-        match self.operand(e)? {
+        // This level is counted again.
+        self.body.depth -= 1;
+        let operand = self.operand(e)?;
+        self.body.depth += 1;
+        match operand {
             Operand::Constant(k) => {
                 let holds = self.program.constants.get(k as usize).is_some_and(|x| *x != 0.0);
                 if holds == when {
@@ -365,6 +380,7 @@ impl Compiler<'_> {
             && self.width(&l.ty, l.span)? == 1)
     }
 
+    #[inline(never)]
     pub(super) fn gen_if(&mut self, e: &Expr, dest: Option<u32>) -> Compiled<Place> {
         let [condition, then, otherwise] = arguments(e)?;
         let n = self.width(&e.ty, e.span)?;
@@ -385,6 +401,7 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    #[inline(never)]
     pub(super) fn gen_let(&mut self, e: &Expr, local: u32, dest: Option<u32>) -> Compiled<Place> {
         let [value, body] = arguments(e)?;
         let (_, t) = self.local(local, e.span)?;
@@ -393,6 +410,7 @@ impl Compiler<'_> {
         self.with_bound(local, Some(place), |c| c.generate(body, dest))
     }
 
+    #[inline(never)]
     pub(super) fn gen_if_some(
         &mut self,
         e: &Expr,
@@ -450,6 +468,7 @@ impl Compiler<'_> {
         Ok(d)
     }
 
+    #[inline(never)]
     pub(super) fn gen_switch(
         &mut self,
         e: &Expr,
@@ -505,6 +524,7 @@ impl Compiler<'_> {
         }
     }
 
+    #[inline(never)]
     pub(super) fn gen_quantified(&mut self, e: &Expr, q: Quantifier, dest: Option<u32>) -> Compiled<Place> {
         let [of] = arguments(e)?;
         gives(e, &Type::NUMBER)?;
@@ -572,6 +592,7 @@ impl Compiler<'_> {
         self.body.cost = before.saturating_add(once.saturating_mul(times));
     }
 
+    #[inline(never)]
     pub(super) fn gen_of_robot(&mut self, e: &Expr, group: u32, dest: Option<u32>) -> Compiled<Place> {
         let [of] = arguments(e)?;
         if group as usize >= self.robots.len() {

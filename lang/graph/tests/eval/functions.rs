@@ -150,18 +150,28 @@ fn cases() -> Vec<(Function, Vec<Expr>, Type, Value)> {
     ]
 }
 
+/// Equal but for the last digits of single numbers and poses.
+fn close(a: &Value, b: &Value) -> bool {
+    let near = |x: f64, y: f64| (x - y).abs() < 1e-15;
+    match (a, b) {
+        (Value::Number(x), Value::Number(y)) => near(*x, *y),
+        (Value::Pose(x), Value::Pose(y)) => x.iter().zip(y).all(|(x, y)| near(*x, *y)),
+        _ => a == b,
+    }
+}
+
 #[test]
 fn every_function_has_its_value() {
     let mut covered = BTreeSet::new();
     for (f, args, ty, wanted) in cases() {
         let folded = value(&call(f, args.clone(), ty.clone()));
-        assert_eq!(folded, wanted, "{f:?}");
+        assert!(close(&folded, &wanted), "{f:?}: {folded:?}");
         // The same with arguments the compiler does not know.
         let known: Vec<(Type, Value)> =
             args.iter().map(|a| (a.ty.clone(), a.as_const().expect("a constant").clone())).collect();
         if !known.iter().any(|(t, _)| matches!(t, Type::Handle(_))) {
             let run = applied(|names| call(f, names.to_vec(), ty), &known);
-            assert_eq!(run, Ok(wanted), "{f:?}");
+            assert_eq!(run, Ok(folded), "{f:?}");
         }
         covered.insert(f);
     }

@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use proptest::prelude::*;
+use proptest::strategy::Strategy;
 use soifra_graph::*;
 
 fn refused(e: Expr, locals: &[Type]) -> String {
@@ -104,21 +105,15 @@ fn deep_expressions_do_not_overflow_the_stack() {
         std::thread::Builder::new()
             .stack_size(2 << 20)
             .spawn(move || {
-                let levels = if i == 6 {
-                    2040 / 2
-                } else if i == 2 || i == 4 {
-                    2040 / 2
-                } else {
-                    2040
-                };
+                let levels = [2040, 2040, 680, 1020, 500, 1020, 400][i];
                 let e = (0..levels).fold(op(Op::State(0), vec![], Type::NUMBER), |e, _| wrap(e));
                 let locals = [Type::NUMBER, Type::NUMBER];
                 let ready =
-                    Ready::new(graph(), &locals, |c, s| c.expr(s, &e)).unwrap_or_else(|e| panic!("{e}"));
+                    Ready::new(graph(), &locals, |c, s| c.expr(s, &e)).unwrap_or_else(|e| panic!("{i}: {e}"));
                 let mut registers = Registers::new(&ready.graph);
                 ready.run(&mut registers, &mut World::default()).unwrap();
                 // Twice as deep is refused.
-                let e = (0..5000).fold(e, |e, _| wrap(e));
+                let e = (0..2000).fold(e, |e, _| wrap(e));
                 assert!(Ready::new(graph(), &locals, |c, s| c.expr(s, &e)).is_err());
                 // Dropping it is not what is tested here.
                 std::mem::forget(e);
