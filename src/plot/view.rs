@@ -42,9 +42,9 @@ impl Extent {
     /// Grows to hold a disc (a point when it has no radius).
     pub(super) fn take(&mut self, at: [f64; 2], radius: f64) {
         if in_sight(&at) && in_sight(&[radius]) {
-            for i in 0..2 {
-                self.low[i] = f64::min(self.low[i], at[i] - radius);
-                self.high[i] = f64::max(self.high[i], at[i] + radius);
+            for ((low, high), x) in self.low.iter_mut().zip(&mut self.high).zip(at) {
+                *low = low.min(x - radius);
+                *high = high.max(x + radius);
             }
         }
     }

@@ -14,9 +14,10 @@ mod header;
 pub mod palette;
 mod reader;
 mod scan;
+mod scene_update;
 mod schema;
 pub mod shape;
-mod viewer;
+mod transform;
 mod writer;
 
 pub use error::TraceError;

@@ -29,7 +29,7 @@ fn hue(degrees: f64) -> Color {
     let chroma = saturation * f64::min(lightness, 1.0 - lightness);
     [0.0, 8.0, 4.0].map(|offset| {
         let k = (offset + degrees / 30.0) % 12.0;
-        let level = lightness - chroma * f64::max(-1.0, f64::min(f64::min(k - 3.0, 9.0 - k), 1.0));
+        let level = lightness - chroma * f64::min(k - 3.0, 9.0 - k).clamp(-1.0, 1.0);
         (level * 255.0).round() as u8
     })
 }

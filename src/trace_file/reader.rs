@@ -6,7 +6,7 @@
 use super::{
     Header, TraceError,
     scan::{Content, End, Scanner, damaged},
-    viewer::Transform,
+    transform::Transform,
 };
 use soifra_runtime::{Event, Record, Time};
 use std::{

@@ -3,7 +3,12 @@
 //! Chunks are handed to the operating system whole, one after the other, without seeking back: when the
 //! process is killed the file holds every chunk but the last.
 
-use super::{Header, SCHEMA, schema, viewer};
+use super::{
+    Header, SCHEMA,
+    scene_update::SceneUpdate,
+    schema,
+    transform::{Transform, robot_frame},
+};
 use mcap::write::NoSeek;
 use sha2::{Digest, Sha256};
 use soifra_runtime::{Record, Time, TraceSink};
@@ -70,12 +75,12 @@ impl Writer {
             path: path.to_path_buf(),
             channels: [None; schema::KINDS.len()],
             transforms: None,
-            frames: header.scene.robots.iter().map(|r| viewer::robot_frame(&r.name)).collect(),
+            frames: header.scene.robots.iter().map(|r| robot_frame(&r.name)).collect(),
             chunk: Chunk::default(),
             message: Vec::with_capacity(1024),
         };
         writer.once(schema::HEADER_TOPIC, schema::HEADER, header.to_message()?)?;
-        let scene = serde_json::to_vec(&viewer::scene_update(&header.scene))?;
+        let scene = serde_json::to_vec(&SceneUpdate::of(&header.scene))?;
         writer.once(schema::SCENE_TOPIC, schema::SCENE_UPDATE, scene)?;
         // So that a run that dies early leaves its header, and a full disk is known at the start.
         writer.close_chunk()?;
@@ -100,7 +105,7 @@ impl Writer {
             ));
         }
         self.message.clear();
-        let transform = viewer::Transform::of(record, &self.frames);
+        let transform = Transform::of(record, &self.frames);
         let channel = match transform {
             Some(transform) => {
                 serde_json::to_writer(&mut self.message, &transform)?;

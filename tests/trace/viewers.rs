@@ -93,20 +93,8 @@ fn the_scene_shows_everything_that_has_a_body() {
     assert_eq!(
         ids,
         [
-            "bounds/0",
-            "divider",
-            "pillar",
-            "crate",
-            "dock",
-            "yard",
-            "block[0]",
-            "block[1]",
-            "r1",
-            "r1 target",
-            "r2",
-            "r2 target",
-            "r3",
-            "r3 target"
+            "bounds/0", "divider", "pillar", "crate", "dock", "yard", "block[0]", "block[1]", "r1", "r2",
+            "r3", "targets"
         ]
     );
     let robot = &scene["entities"][8];
