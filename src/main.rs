@@ -1,1 +1,5 @@
-fn main() {}
+//! The `soifra` binary; everything is in the library.
+
+fn main() -> std::process::ExitCode {
+    soifra::main()
+}

@@ -1,0 +1,95 @@
+//! `soifra check`: compiles missions and tells everything that was found.
+
+use crate::{
+    compile,
+    exit::Exit,
+    output::{self, Format},
+    report::{JsonDiagnostic, Refusal},
+};
+use clap::{Args, ValueEnum, ValueHint};
+use serde::Serialize;
+
+/// Arguments.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Mission sources (.soi) or behaviour graphs (.yaml, .json)
+    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    files: Vec<String>,
+    /// Check every robot on this platform profile
+    #[arg(long, value_name = "PROFILE")]
+    platform: Option<String>,
+    /// Make these findings count as errors
+    #[arg(long, value_enum, value_name = "WHAT")]
+    deny: Option<Deny>,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Deny {
+    /// Every warning
+    Warnings,
+}
+
+#[derive(Serialize)]
+struct Document {
+    schema: u32,
+    outcome: &'static str,
+    errors: usize,
+    warnings: usize,
+    files: Vec<File>,
+    diagnostics: Vec<JsonDiagnostic>,
+}
+
+#[derive(Serialize)]
+struct File {
+    path: String,
+    sound: bool,
+    mission: Option<String>,
+    graph_digest: Option<String>,
+    errors: usize,
+    warnings: usize,
+}
+
+/// Runs the command.
+pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
+    let mut document =
+        Document { schema: output::SCHEMA, outcome: "success", errors: 0, warnings: 0, files: Vec::new(), diagnostics: Vec::new() };
+    for path in &a.files {
+        let (findings, sound, graph) = match compile::check(path, a.platform.as_deref(), None) {
+            Ok(c) => (c.findings, true, c.graph),
+            Err(r) => (r.findings, false, None),
+        };
+        findings.print();
+        if !findings.diagnostics.is_empty() {
+            output::note(&format!("{path}: {}", findings.count()));
+        }
+        let digest = graph.as_ref().filter(|_| a.format == Format::Json).map(crate::graph_file::digest);
+        let mission = graph.map(|g| g.name.to_string());
+        document.errors += findings.errors();
+        document.warnings += findings.warnings();
+        document.diagnostics.extend(findings.to_json());
+        let (errors, warnings) = (findings.errors(), findings.warnings());
+        document.files.push(File { path: path.clone(), sound, mission, graph_digest: digest, errors, warnings });
+    }
+    let denied = a.deny == Some(Deny::Warnings) && document.warnings > 0;
+    let refused = denied || document.files.iter().any(|f| !f.sound);
+    if refused {
+        document.outcome = "refused";
+    }
+    match a.format {
+        Format::Json => output::print_json(&document)?,
+        Format::Human if !refused => output::print(&passed(&document))?,
+        Format::Human => {}
+    }
+    Ok(if refused { Exit::WrongInput } else { Exit::Success })
+}
+
+fn passed(d: &Document) -> String {
+    let line = |f: &File| match &f.mission {
+        Some(mission) => format!("{}: mission `{mission}` is sound\n", f.path),
+        None => format!("{}: sound; no mission in it\n", f.path),
+    };
+    d.files.iter().map(line).collect()
+}

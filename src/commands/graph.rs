@@ -1,0 +1,64 @@
+//! `soifra graph`: the behaviour graph as a picture or as data.
+
+use crate::{cli::Mission, compile, exit::Exit, files, graph_file, graph_view, output, output::Format, report::Refusal};
+use clap::{Args, ValueEnum, ValueHint};
+use soifra_graph::Graph;
+
+/// Arguments.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    mission: Mission,
+    /// The form
+    #[arg(long, value_enum, default_value_t)]
+    format: Form,
+    /// Write to this file instead of standard output
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    output: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum Form {
+    /// Flowchart for Markdown pages
+    #[default]
+    Mermaid,
+    /// For Graphviz
+    Dot,
+    /// A picture, laid out
+    Svg,
+    /// Graph file that can be run in place of the source
+    Yaml,
+    /// Graph file that can be run in place of the source
+    Json,
+}
+
+impl Arguments {
+    /// Whether standard output carries a JSON document.
+    pub fn document(&self) -> Format {
+        if self.format == Form::Json && self.output.is_none() { Format::Json } else { Format::Human }
+    }
+}
+
+/// Runs the command.
+pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
+    let compiled = compile::compile(&a.mission.file, a.mission.platform.as_deref())?;
+    compiled.findings.print();
+    let text = render(&compiled.graph, a.format).map_err(|e| {
+        Refusal::about(&a.mission.file, "S9999", "the graph cannot be written", e, "please report this").exit(Exit::Internal)
+    })?;
+    match &a.output {
+        Some(path) => files::write(path, text.as_bytes())?,
+        None => output::print(&text)?,
+    }
+    Ok(Exit::Success)
+}
+
+fn render(graph: &Graph, form: Form) -> Result<String, String> {
+    Ok(match form {
+        Form::Mermaid => graph_view::mermaid(graph),
+        Form::Dot => graph_view::dot(graph),
+        Form::Svg => graph_view::svg(graph),
+        Form::Yaml => graph_file::to_yaml(graph)?,
+        Form::Json => graph_file::to_json(graph)?,
+    })
+}

@@ -1,0 +1,12 @@
+//! The commands, one file each.
+
+pub mod check;
+pub mod completions;
+pub mod explain;
+pub mod fmt;
+pub mod graph;
+pub mod plot;
+pub mod replay;
+pub mod run;
+pub mod sweep;
+pub mod test;

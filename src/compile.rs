@@ -1,0 +1,150 @@
+//! From what the user named to a checked graph: a source is compiled, a graph file is loaded and verified.
+
+use crate::{
+    files, graph_file,
+    report::{Findings, Refusal},
+};
+use soifra_graph::{Diagnostic, Graph, Span, Value, did_you_mean};
+use soifra_lang::{CheckOptions, TestCase};
+
+/// A graph that passed every check, with the warnings and tests that came along.
+pub struct Compiled {
+    /// The graph.
+    pub graph: Graph,
+    /// Warnings.
+    pub findings: Findings,
+    /// `test` blocks of the source; none for a graph file.
+    pub tests: Vec<TestCase>,
+}
+
+/// A file that passed every check. One of agents or profiles alone has no graph.
+pub struct Checked {
+    /// The graph, when there is a mission.
+    pub graph: Option<Graph>,
+    /// Warnings.
+    pub findings: Findings,
+    /// `test` blocks.
+    pub tests: Vec<TestCase>,
+}
+
+/// Compiles or loads a file that must hold a mission; `platform` replaces the platform of every robot.
+pub fn compile(path: &str, platform: Option<&str>) -> Result<Compiled, Refusal> {
+    compile_mission(path, platform, None)
+}
+
+/// Compiles the mission called `mission` of a file that may hold several.
+pub fn compile_mission(path: &str, platform: Option<&str>, mission: Option<&str>) -> Result<Compiled, Refusal> {
+    let checked = check(path, platform, mission)?;
+    match checked.graph {
+        Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
+        None => Err(Refusal::about(
+            path,
+            "S0701",
+            "there is no mission in this file",
+            "it declares things for missions to import",
+            "name a file with a line that begins `mission NAME`",
+        )),
+    }
+}
+
+/// Checks a file that may be without a mission.
+pub fn check(path: &str, platform: Option<&str>, mission: Option<&str>) -> Result<Checked, Refusal> {
+    let text = files::read_text(path)?;
+    if graph_file::is_graph(path) {
+        return load(path, &text, platform);
+    }
+    if text.trim().is_empty() {
+        let hint = "a mission begins with a line `mission NAME \"title\" {`; the tutorial has one to start from";
+        return Err(Refusal::about(path, "S0701", "there is no mission in this file", "it is empty", hint));
+    }
+    let options = CheckOptions { platform: platform.map(str::to_string), mission: mission.map(str::to_string) };
+    let checked = soifra_lang::check(path, &text, &mut files::Loader, &options);
+    let findings = Findings { diagnostics: checked.diagnostics, sources: checked.sources };
+    if findings.errors() > 0 {
+        return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
+    }
+    Ok(Checked { graph: checked.graph, findings, tests: checked.tests })
+}
+
+fn load(path: &str, text: &str, platform: Option<&str>) -> Result<Checked, Refusal> {
+    let graph = graph_file::parse(path, text)?;
+    if let Some(p) = platform {
+        return Err(Refusal::about(
+            path,
+            "S9009",
+            "a graph file is bound to its platforms",
+            format!("`--platform {p}` cannot change them"),
+            "run the source instead, or make a graph with `soifra graph MISSION --platform NAME`",
+        ));
+    }
+    let findings = Findings { diagnostics: soifra_lang::verify(&graph), sources: graph.sources.clone() };
+    if findings.errors() > 0 {
+        return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
+    }
+    Ok(Checked { graph: Some(graph), findings, tests: Vec::new() })
+}
+
+/// A parameter as `--set` gives it: `name=value`.
+pub fn split_setting(text: &str) -> Result<(String, String), Refusal> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_string(), value.trim().to_string()))
+        }
+        _ => Err(Refusal::about(
+            &format!("--set {text}"),
+            "S9011",
+            "a parameter is set as name=value",
+            "there is no value here",
+            "write it without spaces around `=`, as `--set speed=0.3m/s`",
+        )),
+    }
+}
+
+/// The values of `--set` for the parameters of a graph: index in [`Graph::params`], value.
+pub fn settings(graph: &Graph, sets: &[(String, String)]) -> Result<Vec<(usize, Value)>, Refusal> {
+    sets.iter().map(|(name, text)| setting(graph, name, text)).collect()
+}
+
+fn setting(graph: &Graph, name: &str, text: &str) -> Result<(usize, Value), Refusal> {
+    let argument = format!("--set {name}={text}");
+    let Some(index) = graph.params.iter().position(|p| &*p.name == name) else {
+        let names = || graph.params.iter().map(|p| &*p.name);
+        let hint = match did_you_mean(name, names()) {
+            Some(n) => format!("did you mean `{n}`?"),
+            None if graph.params.is_empty() => "this mission has no parameters".into(),
+            None => format!("the parameters are {}", names().collect::<Vec<_>>().join(", ")),
+        };
+        let seen = format!("mission `{}` has no parameter `{name}`", graph.name);
+        return Err(Refusal::about(&argument, "S9010", "unknown parameter", seen, &hint));
+    };
+    let param = &graph.params[index];
+    match soifra_lang::parse_value(text, &param.ty, &graph.types) {
+        Ok(value) => Ok((index, value)),
+        Err(why) => {
+            let mut diagnostic = Diagnostic::error("S9011", format!("the value does not fit the parameter: {why}"))
+                .at(param.at, format!("`{name}` is declared here, a {}", param.ty))
+                .hint(format!("`--set {name}=…` takes {}", expected(&param.ty, graph)));
+            if param.at == Span::default() {
+                diagnostic.labels.clear();
+            }
+            let findings = Findings { diagnostics: vec![diagnostic], sources: graph.sources.clone() };
+            Err(Refusal { findings, exit: crate::exit::Exit::WrongInput })
+        }
+    }
+}
+
+/// What a parameter takes, in words.
+fn expected(ty: &soifra_graph::Type, graph: &Graph) -> String {
+    use soifra_graph::Type;
+    match ty {
+        Type::Bool => "on, off, true or false".into(),
+        Type::Int => "a whole number".into(),
+        Type::Quantity(d) if d.si_unit().is_empty() => "a number".into(),
+        Type::Quantity(d) => format!("a number with a unit, as 2{}", d.si_unit()),
+        Type::Enum(n) => match graph.types.enums.get(n) {
+            Some(e) => format!("one of {}", e.variants.iter().map(|v| &**v).collect::<Vec<_>>().join(", ")),
+            None => format!("a variant of {n}"),
+        },
+        other => format!("a {other}"),
+    }
+}

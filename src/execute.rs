@@ -1,0 +1,118 @@
+//! Runs a mission in the simulator: graph, parameters and seed in, report and trace out.
+
+use crate::{
+    exit::Exit,
+    files, graph_file,
+    report::{Findings, Refusal},
+    trace_file,
+};
+use soifra_graph::{Diagnostic, Graph, Value, span::Source};
+use soifra_platforms::sim::Simulator;
+use soifra_runtime::{Engine, Mission, NoTrace, Outcome, RunReport, Scene, Settings, TraceSink};
+use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+
+/// Compiles the code of a graph.
+pub fn load(graph: Graph) -> Result<Mission, Refusal> {
+    let sources = graph.sources.clone();
+    Mission::load(graph).map_err(|diagnostics| refuse(diagnostics, sources))
+}
+
+/// Settings for one run.
+pub fn settings(graph: &Graph, seed: u64, sets: &[(usize, Value)], threads: usize) -> Settings {
+    let named = sets.iter().filter_map(|(i, v)| Some((graph.params.get(*i)?.name.to_string(), v.clone())));
+    Settings { seed, params: named.collect(), threads }
+}
+
+/// A run that is set up: everything that can be wrong with it before it starts has been told.
+pub struct Prepared<'m> {
+    mission: &'m Mission,
+    settings: Settings,
+    scene: Scene,
+}
+
+impl<'m> Prepared<'m> {
+    /// Evaluates the scene for the settings.
+    pub fn new(mission: &'m Mission, settings: Settings) -> Result<Self, Refusal> {
+        let scene = mission.scene(&settings).map_err(|d| refuse(vec![d], mission.graph().sources.clone()))?;
+        Ok(Prepared { mission, settings, scene })
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Runs without a trace.
+    pub fn run(&self, stop: &AtomicBool) -> Result<RunReport, Refusal> {
+        self.run_into(&mut NoTrace, stop)
+    }
+
+    /// Runs with the records going to `sink`.
+    pub fn run_into(&self, sink: &mut dyn TraceSink, stop: &AtomicBool) -> Result<RunReport, Refusal> {
+        let sources = || self.mission.graph().sources.clone();
+        let mut simulator = Simulator::new(&self.scene).map_err(|why| self.not_simulated(why))?;
+        let engine = Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, sink, stop);
+        Ok(engine.map_err(|d| refuse(vec![d], sources()))?.run())
+    }
+
+    /// The scene has a part that the simulator does not take.
+    fn not_simulated(&self, why: String) -> Refusal {
+        let path = self.mission.graph().sources.first().map_or(String::new(), |s| s.path.clone());
+        let hint = "look at the start poses, sizes and profiles, and at what `--set` gives them";
+        Refusal::about(&path, "S9020", "the mission cannot be set up", why, hint)
+    }
+
+    /// Runs with a trace file. Whether the file can be written is known before anything starts.
+    pub fn run_traced(&self, path: &str, stop: &AtomicBool) -> Result<(RunReport, trace_file::Finished), Refusal> {
+        let header = header(self.mission, &self.settings, &self.scene)?;
+        let unwritable = |e: std::io::Error| files::unwritable(path, &e);
+        files::make_folder(path).map_err(unwritable)?;
+        let mut writer = trace_file::Writer::create(path, &header).map_err(unwritable)?;
+        let mut report = self.run_into(&mut writer, stop)?;
+        let finished = writer.finish().or_else(|e| {
+            // The last chunk did not go out: what is on disk still counts.
+            report.outcome = Outcome::Aborted;
+            report.reason = format!("the trace stopped being writable: {}", files::reason(&e));
+            let digest = trace_file::digest(path).unwrap_or_default();
+            let bytes = std::fs::metadata(path).map_or(0, |m| m.len());
+            Ok::<_, Refusal>(trace_file::Finished { digest, bytes })
+        })?;
+        Ok((report, finished))
+    }
+}
+
+/// The header of a run's trace.
+fn header(mission: &Mission, settings: &Settings, scene: &Scene) -> Result<trace_file::Header, Refusal> {
+    let graph = mission.graph();
+    let mut params: BTreeMap<String, Value> =
+        graph.params.iter().map(|p| (p.name.to_string(), p.default.clone())).collect();
+    params.extend(settings.params.clone());
+    let graph_json = graph_file::canonical(graph).map_err(|e| {
+        let source = Source { path: graph.name.to_string(), text: String::new() };
+        Refusal::with(Diagnostic::error("S9999", format!("the graph cannot be written: {e}")), source).exit(Exit::Internal)
+    })?;
+    Ok(trace_file::Header {
+        mission: graph.name.to_string(),
+        title: graph.title.clone(),
+        versions: BTreeMap::from([("soifra".to_string(), env!("CARGO_PKG_VERSION").to_string())]),
+        params,
+        scene: scene.clone(),
+        graph_json,
+    })
+}
+
+/// What a finished run ends the process with.
+pub fn exit_of(report: &RunReport) -> Exit {
+    if report.interrupted() { Exit::Interrupted } else { Exit::of_outcome(report.outcome.name()) }
+}
+
+fn refuse(diagnostics: Vec<Diagnostic>, sources: Vec<Source>) -> Refusal {
+    Refusal { findings: Findings { diagnostics, sources }, exit: Exit::WrongInput }
+}
+
+/// How many threads to use: as asked, else `RAYON_NUM_THREADS`, else one a core.
+pub fn threads(asked: Option<usize>) -> usize {
+    let from_environment = || std::env::var("RAYON_NUM_THREADS").ok()?.trim().parse().ok().filter(|n| *n > 0);
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    asked.filter(|n| *n > 0).or_else(from_environment).unwrap_or_else(cores)
+}

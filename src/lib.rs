@@ -1,0 +1,32 @@
+//! The shell around the language and the runtime: reads arguments, opens files, draws on the terminal.
+//! Everything below it is pure or talks through traits.
+
+pub mod cli;
+pub mod codes;
+pub mod commands;
+pub mod compile;
+pub mod execute;
+pub mod exit;
+pub mod files;
+pub mod fuzz;
+pub mod golden;
+pub mod graph_file;
+pub mod graph_view;
+pub mod interrupt;
+mod last_resort;
+pub mod output;
+pub mod plot;
+pub mod report;
+pub mod seeds;
+pub mod statistics;
+pub mod sweep;
+pub mod trace_file;
+pub mod wall_clock;
+
+use std::process::ExitCode;
+
+/// The program.
+pub fn main() -> ExitCode {
+    let arguments = std::env::args_os().collect();
+    last_resort::guarded(move || cli::run(arguments)).into()
+}

@@ -1,0 +1,4 @@
+//! What the design promises about the sources themselves.
+
+mod dependencies;
+mod names;
