@@ -26,7 +26,7 @@ pub struct Piece {
     pub path: f64,
     /// Path walked per second; more than |velocity| where the piece stands for an arc.
     pub speed: f64,
-    /// Sine and cosine of half the heading at the start: z and w of its quaternion.
+    /// Sine and cosine of half the heading, where it does not turn: z and w of its quaternion.
     half: [f64; 2],
 }
 
@@ -54,7 +54,8 @@ impl Piece {
 
     /// Moving from `start` to `end`.
     pub fn moving(start: i64, end: i64, from: Place, velocity: Vec2, turn: f64, speed: f64) -> Piece {
-        let (s, c) = libm::sincos(0.5 * from.heading);
+        // Of a turning piece no more than the heading is kept: most of them nobody looks at.
+        let (s, c) = if turn == 0.0 { libm::sincos(0.5 * from.heading) } else { (0.0, 1.0) };
         let Place { at, heading, path } = from;
         Piece { start, end, at, heading, velocity, turn, path, speed, half: [s, c] }
     }
@@ -113,8 +114,6 @@ pub struct Body {
     pub radius: f64,
     /// Height of its base and of its top over the ground of the world.
     pub span: [f64; 2],
-    /// Never faster than this.
-    pub top_speed: f64,
     /// How much infrared it reflects.
     pub reflectance: f64,
     /// By start; the last one has no end or reaches beyond the present.
@@ -123,17 +122,8 @@ pub struct Body {
 
 impl Body {
     /// A body that stands still.
-    pub fn new(
-        name: String,
-        radius: f64,
-        span: [f64; 2],
-        top_speed: f64,
-        reflectance: f64,
-        at: Place,
-    ) -> Body {
-        // Pieces end at whole nanoseconds, which may make one a little faster than its drive.
-        let top_speed = top_speed * 1.0001;
-        Body { name, radius, span, top_speed, reflectance, pieces: vec![Piece::rest(0, at)] }
+    pub fn new(name: String, radius: f64, span: [f64; 2], reflectance: f64, at: Place) -> Body {
+        Body { name, radius, span, reflectance, pieces: vec![Piece::rest(0, at)] }
     }
 
     /// Whether two bodies stand at one height.
@@ -158,6 +148,12 @@ impl Body {
     /// Where it is at `t`.
     pub fn place(&self, t: i64) -> Place {
         self.piece(t).place(t)
+    }
+
+    /// Path walked up to `t`.
+    pub fn path(&self, t: i64) -> f64 {
+        let piece = self.piece(t);
+        piece.path + piece.speed * seconds(piece.start, t.min(piece.end))
     }
 
     /// Pose in `map` at `t`: x y z qx qy qz qw.

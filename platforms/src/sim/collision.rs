@@ -1,26 +1,24 @@
 //! Contacts of robots with each other, with movers, walls and obstacles: swept, with exact times.
 //!
-//! Broad phase: pairs that could touch within a lookahead, however their drives are commanded (a drive has
-//! a top speed). Each pair sleeps until its gap could be closed. Narrow phase: over each stretch of time in
-//! which both move at constant velocity, the instants of touch and of parting are roots of a quadratic,
-//! taken from the start of that stretch. So neither how often somebody polls, nor the lookahead, changes a
-//! contact or its time, and nothing tunnels.
+//! Broad phase: pairs that can touch before one of the two has walked farther than a margin. It is gathered
+//! anew when somebody has. Each pair knows its gap, and is looked at only when the two together have walked
+//! that far. Narrow phase: over each stretch of time in which both move at constant velocity, the instants
+//! of touch and of parting are roots of a quadratic, taken from the start of that stretch. So neither how
+//! often somebody polls nor the margin changes a contact or its time, and nothing tunnels.
 //!
 //! Contacts are observed; they do not change motion.
 
 use super::{
-    body::{Body, Piece, seconds},
-    geometry::{Aabb, Interval, sub, within},
-    index::Grid,
+    body::{Body, Piece},
+    geometry::{Aabb, Interval, norm, sub, within},
+    index::{Neighbours, Spot},
     scene::Things,
 };
 use soifra_runtime::{Report, Time};
 
-/// Two bodies have parted when their gap is larger than this (m).
+/// Two bodies have parted when their gap is larger than this (m). Also covers rounding of gaps.
 const HYSTERESIS: f64 = 1e-9;
-/// The lookahead stays within these (ns).
-const LOOKAHEAD: (i64, i64) = (1_000_000, 10_000_000_000);
-/// Pairs for each robot that a lookahead should come to.
+/// Pairs for each robot that a margin should come to.
 const PAIRS: (usize, usize) = (2, 6);
 
 /// Watches for contacts.
@@ -28,16 +26,15 @@ const PAIRS: (usize, usize) = (2, 6);
 pub struct Collisions {
     robots: usize,
     pairs: Vec<Pair>,
-    /// The earliest that any pair wakes.
-    wake: i64,
-    /// Contacts are known up to here.
+    /// Contacts are known up to here; before the first sweep, nowhere.
     checked: i64,
-    /// When the pairs must be gathered anew.
-    expires: i64,
-    lookahead: i64,
-    /// No shorter than this: the neighbours of a crowd are too many for any lookahead.
-    shortest: i64,
-    grid: Grid,
+    /// By body: how far it has walked since the pairs were gathered, and how far it may.
+    walked: Vec<f64>,
+    margins: Vec<Margin>,
+    /// How far every body may walk beyond what it has walked when pairs are gathered.
+    spare: f64,
+    least_spare: f64,
+    neighbours: Neighbours,
     events: Vec<(i64, bool)>,
     reports: Vec<Report>,
     counts: Vec<u32>,
@@ -59,25 +56,32 @@ struct Pair {
     robot: u32,
     other: Other,
     touching: bool,
-    /// No contact begins before this.
-    wake: i64,
+    /// They cannot touch before they have together walked farther than this since pairs were gathered.
+    gap: f64,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Margin {
+    /// Path of the body when pairs were gathered.
+    from: f64,
+    /// How far it may walk from there.
+    allowed: f64,
 }
 
 impl Collisions {
     /// For bodies of which the first `robots` are robots.
     pub fn new(robots: usize, bodies: &[Body]) -> Collisions {
-        let fastest = bodies.iter().map(|b| b.top_speed).fold(0.0, f64::max);
         let radius = bodies.iter().map(|b| b.radius).sum::<f64>() / bodies.len().max(1) as f64;
-        let shortest = later(0, 0.5 * radius / fastest).clamp(LOOKAHEAD.0, LOOKAHEAD.1);
         Collisions {
             robots,
             pairs: Vec::new(),
-            wake: i64::MAX,
-            checked: 0,
-            expires: 0,
-            lookahead: shortest,
-            shortest,
-            grid: Grid::default(),
+            checked: -1,
+            walked: vec![0.0; bodies.len()],
+            // Nobody may walk before the first gathering.
+            margins: vec![Margin { from: 0.0, allowed: -1.0 }; bodies.len()],
+            spare: radius,
+            least_spare: 0.25 * radius,
+            neighbours: Neighbours::default(),
             events: Vec::new(),
             reports: Vec::new(),
             counts: vec![0; robots],
@@ -89,11 +93,6 @@ impl Collisions {
     /// Contacts are known up to here; earlier motion may be forgotten.
     pub fn checked(&self) -> i64 {
         self.checked
-    }
-
-    /// When [`Collisions::gather`] is needed.
-    pub fn expires(&self) -> i64 {
-        self.expires
     }
 
     /// Moves the reports out, in order of time, robot, other.
@@ -119,26 +118,87 @@ impl Collisions {
 
     /// Finds what begins and ends up to `to`. All motion up to then must be planned.
     pub fn sweep(&mut self, bodies: &[Body], things: &Things, to: i64) {
-        let from = self.checked;
-        self.checked = to;
-        if self.wake > to {
+        if to <= self.checked {
             return;
         }
+        let from = self.checked.max(0);
+        self.checked = to;
+        let mut within = true;
+        for ((walked, margin), body) in self.walked.iter_mut().zip(&self.margins).zip(bodies) {
+            *walked = body.path(to) - margin.from;
+            within &= *walked <= margin.allowed;
+        }
+        if !within {
+            self.gather(bodies, things, from, to);
+        }
         let mut pairs = std::mem::take(&mut self.pairs);
-        let mut wake = i64::MAX;
         for pair in &mut pairs {
-            if pair.wake <= to {
+            let other = match pair.other {
+                Other::Body(o) => self.walked[o as usize],
+                Other::Thing(_) => 0.0,
+            };
+            if pair.gap <= self.walked[pair.robot as usize] + other {
                 self.examine(pair, bodies, things, from, to);
             }
-            wake = wake.min(pair.wake);
         }
-        (self.pairs, self.wake) = (pairs, wake);
+        self.pairs = pairs;
+    }
+
+    /// Gathers the pairs that can touch from `from` on, while nobody walks farther than until `to` and some
+    /// more.
+    fn gather(&mut self, bodies: &[Body], things: &Things, from: i64, to: i64) {
+        let mut touching: Vec<(u32, Other)> =
+            self.pairs.iter().filter(|p| p.touching).map(|p| (p.robot, p.other)).collect();
+        touching.sort_unstable();
+        let was_touching = |robot: u32, other: Other| {
+            !touching.is_empty() && touching.binary_search(&(robot, other)).is_ok()
+        };
+        self.pairs.clear();
+        let spots = bodies.iter().enumerate().map(|(i, b)| {
+            let place = b.place(from);
+            self.walked[i] = b.path(to) - place.path;
+            let allowed = self.walked[i] + self.spare;
+            self.margins[i] = Margin { from: place.path, allowed };
+            Spot { at: place.at, reach: b.radius + allowed + HYSTERESIS, item: i as u32 }
+        });
+        let robots = self.robots as u32;
+        let pairs = &mut self.pairs;
+        self.neighbours.fill(spots);
+        self.neighbours.each(|a, b, distance| {
+            let (robot, other) = (a.min(b), a.max(b));
+            let (x, y) = (&bodies[robot as usize], &bodies[other as usize]);
+            if robot < robots && x.level_with(y.span) {
+                let gap = distance - x.radius - y.radius - HYSTERESIS;
+                let other = Other::Body(other);
+                pairs.push(Pair { robot, other, touching: was_touching(robot, other), gap });
+            }
+        });
+        if !things.all.is_empty() {
+            for (i, body) in bodies[..self.robots].iter().enumerate() {
+                let at = body.place(from).at;
+                let reach = body.radius + self.margins[i].allowed + HYSTERESIS;
+                things.grid.query(&Aabb::around(at, reach), |j| {
+                    let thing = &things.all[j as usize];
+                    let gap = thing.shape.distance(at) - body.radius - HYSTERESIS;
+                    if body.level_with(thing.span) && gap <= self.margins[i].allowed {
+                        let (robot, other) = (i as u32, Other::Thing(j));
+                        pairs.push(Pair { robot, other, touching: was_touching(robot, other), gap });
+                    }
+                });
+            }
+        }
+        // Many pairs cost at every sweep, little to spare costs gathering.
+        self.spare = match self.pairs.len() {
+            n if n > PAIRS.1 * self.robots => (self.spare / 1.5).max(self.least_spare),
+            n if n <= PAIRS.0 * self.robots => self.spare * 1.5,
+            _ => self.spare,
+        };
     }
 
     fn examine(&mut self, pair: &mut Pair, bodies: &[Body], things: &Things, from: i64, to: i64) {
         let robot = &bodies[pair.robot as usize];
         let (mut touching, mut events) = (pair.touching, std::mem::take(&mut self.events));
-        match pair.other {
+        let (gap, other_walked) = match pair.other {
             Other::Body(o) => {
                 let other = &bodies[o as usize];
                 let reach = robot.radius + other.radius;
@@ -147,6 +207,7 @@ impl Collisions {
                     let v = sub(a.velocity, b.velocity);
                     s.contacts(&mut touching, |gap| within(p, v, reach + gap), &mut events);
                 });
+                (norm(sub(robot.place(to).at, other.place(to).at)) - other.radius, self.walked[o as usize])
             }
             Other::Thing(o) => {
                 let shape = &things.all[o as usize].shape;
@@ -156,14 +217,18 @@ impl Collisions {
                         s.contacts(&mut touching, contact, &mut events);
                     }
                 }
+                (shape.distance(robot.place(to).at), 0.0)
             }
-        }
+        };
         for (at, begin) in events.drain(..) {
             self.report(pair, bodies, things, at, begin);
         }
         self.events = events;
         pair.touching = touching;
-        pair.wake = if touching { to } else { wake(robot, pair.other, bodies, things, to) };
+        pair.gap = match touching {
+            true => f64::NEG_INFINITY,
+            false => gap - robot.radius - HYSTERESIS + self.walked[pair.robot as usize] + other_walked,
+        };
     }
 
     fn report(&mut self, pair: &Pair, bodies: &[Body], things: &Things, at: i64, begin: bool) {
@@ -186,70 +251,6 @@ impl Collisions {
             false => Report::ContactEnd { at, robot, other, with },
         });
     }
-
-    /// Gathers the pairs that could touch within the lookahead from `now`, the instant last swept to.
-    pub fn gather(&mut self, bodies: &[Body], things: &Things, now: i64) {
-        let mut touching: Vec<(u32, Other)> =
-            self.pairs.iter().filter(|p| p.touching).map(|p| (p.robot, p.other)).collect();
-        touching.sort_unstable();
-        self.pairs.clear();
-        self.wake = i64::MAX;
-        let ahead = seconds(0, self.lookahead);
-        let reach = |b: &Body| b.radius + b.top_speed * ahead + HYSTERESIS;
-        self.grid.fill(bodies.iter().map(|b| Aabb::around(b.place(now).at, reach(b))));
-        for i in 0..self.robots {
-            let (robot, first) = (&bodies[i], self.pairs.len());
-            let area = *self.grid.area(i);
-            let pairs = &mut self.pairs;
-            let mut add = |other: Other, span: [f64; 2]| {
-                if robot.level_with(span) {
-                    let wake = wake(robot, other, bodies, things, now);
-                    if wake <= now + self.lookahead {
-                        pairs.push(Pair { robot: i as u32, other, touching: false, wake });
-                    }
-                }
-            };
-            self.grid.query(&area, |j| {
-                if j > i as u32 {
-                    add(Other::Body(j), bodies[j as usize].span);
-                }
-            });
-            things.grid.query(&area, |j| add(Other::Thing(j), things.all[j as usize].span));
-            for p in &mut self.pairs[first..] {
-                p.touching = !touching.is_empty() && touching.binary_search(&(p.robot, p.other)).is_ok();
-                self.wake = self.wake.min(p.wake);
-            }
-        }
-        self.expires = now.saturating_add(self.lookahead);
-        // Many pairs cost at every sweep, a short lookahead costs gathering.
-        self.lookahead = match self.pairs.len() {
-            n if n > PAIRS.1 * self.robots => self.lookahead / 3 * 2,
-            n if n <= PAIRS.0 * self.robots => self.lookahead / 2 * 3,
-            _ => self.lookahead,
-        }
-        .clamp(self.shortest, LOOKAHEAD.1);
-    }
-}
-
-/// The instant before which two cannot touch, whatever they are told.
-fn wake(robot: &Body, other: Other, bodies: &[Body], things: &Things, now: i64) -> i64 {
-    let at = robot.place(now).at;
-    let (gap, speed) = match other {
-        Other::Body(o) => {
-            let o = &bodies[o as usize];
-            let d = sub(o.place(now).at, at);
-            (libm::hypot(d[0], d[1]) - o.radius, robot.top_speed + o.top_speed)
-        }
-        Other::Thing(o) => (things.all[o as usize].shape.distance(at), robot.top_speed),
-    };
-    let gap = gap - robot.radius - HYSTERESIS;
-    if gap <= 0.0 { now } else { later(now, gap / speed) }
-}
-
-/// The last whole nanosecond within `dt` seconds from `t`.
-fn later(t: i64, dt: f64) -> i64 {
-    // `as` saturates, also for a division by a speed of zero.
-    t.saturating_add((dt * 1e9) as i64)
 }
 
 /// A stretch of time in which two move at constant velocity, and the part of it that is examined.
@@ -306,17 +307,17 @@ impl Stretch {
 
 /// Calls `f` for every stretch of constant velocities of two trajectories that has a part in `from..=to`.
 fn stretches(a: &[Piece], b: &[Piece], from: i64, to: i64, mut f: impl FnMut(Stretch, &Piece, &Piece)) {
-    let (mut i, mut j) = (0, 0);
+    let (mut i, mut j) = (first(a, from), first(b, from));
     while i < a.len() && j < b.len() {
         let (p, q) = (&a[i], &b[j]);
         let (start, end) = (p.start.max(q.start), p.end.min(q.end));
+        if start > to {
+            return;
+        }
         if start <= end
             && let Some(s) = Stretch::new(start, end, from, to)
         {
             f(s, p, q);
-        }
-        if start > to {
-            return;
         }
         if p.end <= q.end {
             i += 1;
@@ -324,6 +325,11 @@ fn stretches(a: &[Piece], b: &[Piece], from: i64, to: i64, mut f: impl FnMut(Str
             j += 1;
         }
     }
+}
+
+/// The first piece that does not end before `from`.
+fn first(pieces: &[Piece], from: i64) -> usize {
+    pieces.iter().position(|p| p.end >= from).unwrap_or(pieces.len())
 }
 
 fn order(r: &Report) -> (Time, u32, u32) {

@@ -25,9 +25,9 @@ use scene::Things;
 use schedule::Schedule;
 use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
 
-/// With robots or movers whose plans grow as time goes on, contacts are checked at least that often (ns), so
-/// that plans can be forgotten.
-const CHECK: i64 = 100_000_000;
+/// Contacts are checked at least that often (ns), so that past motion can be forgotten: with robots whose
+/// motion is planned as time goes on, and without.
+const CHECK: (i64, i64) = (100_000_000, 1_000_000_000);
 
 /// Commands are limited to this in size: beyond it arithmetic overflows.
 const LARGEST: f64 = 1e12;
@@ -36,6 +36,8 @@ const LARGEST: f64 = 1e12;
 #[derive(Debug)]
 pub struct Simulator {
     now: i64,
+    /// All motion is planned up to here.
+    planned: i64,
     /// Robots, then movers.
     bodies: Vec<Body>,
     drives: Vec<Box<dyn Drive>>,
@@ -74,6 +76,7 @@ impl Simulator {
         let twists = |i: &u32| actuators[platforms[*i as usize] as usize].contains(&Actuator::Twist);
         Ok(Simulator {
             now: 0,
+            planned: -1,
             continuous: (0..platforms.len() as u32).filter(twists).collect(),
             collisions: Collisions::new(platforms.len(), &population.bodies),
             schedule: Schedule::new(scene, &chassis)?,
@@ -88,6 +91,10 @@ impl Simulator {
 
     /// Plans all motion up to `t`.
     fn extend(&mut self, t: i64) {
+        if t <= self.planned {
+            return;
+        }
+        self.planned = t;
         let checked = self.collisions.checked();
         for i in &self.continuous {
             self.drives[*i as usize].extend(&mut self.bodies[*i as usize], t, checked);
@@ -100,20 +107,17 @@ impl Simulator {
 
     /// Goes on to `now`: plans, captures, and keeps the search for contacts up to date.
     fn advance(&mut self, now: i64) {
+        let often = if self.continuous.is_empty() { CHECK.1 } else { CHECK.0 };
         loop {
-            let grows = !self.continuous.is_empty();
-            let check = if grows { self.collisions.checked().saturating_add(CHECK) } else { i64::MAX };
-            let t = self.schedule.next_capture().min(self.collisions.expires()).min(check);
+            let check = self.collisions.checked().max(0).saturating_add(often);
+            let t = self.schedule.next_capture().min(check);
             if t > now || t == i64::MAX {
                 break;
             }
             self.extend(t);
             self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things);
-            if t == check || t == self.collisions.expires() {
+            if t == check {
                 self.collisions.sweep(&self.bodies, &self.things, t);
-            }
-            if t == self.collisions.expires() {
-                self.collisions.gather(&self.bodies, &self.things, t);
             }
         }
         self.extend(now);

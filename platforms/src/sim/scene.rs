@@ -170,8 +170,7 @@ pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, Stri
             .ok_or_else(|| format!("robot `{}` has no platform", robot.name))?;
         let (place, z) = start(robot)?;
         let span = [z, z + c.height];
-        let top_speed = c.drive.top_speed();
-        all.bodies.push(Body::new(robot.name.clone(), c.radius, span, top_speed, REFLECTANCE, place));
+        all.bodies.push(Body::new(robot.name.clone(), c.radius, span, REFLECTANCE, place));
         all.drives.push(c.drive.drive(scene.seed, &format!("{}/drive", robot.name)));
     }
     let reflectances = reflectances(scene)?;
@@ -193,7 +192,7 @@ pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, Stri
         let radius = args.positive("radius")?;
         let span = [0.0, args.positive("height")?];
         let reflectance = *reflectances.get(args.text("material")).unwrap_or(&REFLECTANCE);
-        let mut body = Body::new(part.name.clone(), radius, span, args.number("speed")?, reflectance, place);
+        let mut body = Body::new(part.name.clone(), radius, span, reflectance, place);
         body.cut(0);
         all.bodies.push(body);
         all.movers.push(mover);

@@ -84,11 +84,7 @@ fn movers_walls_and_boxes_have_names() {
             "obstacle",
             "crate",
             "box",
-            &[
-                ("at", at(0.0, -1.0)),
-                ("size", Value::Vector([0.2, 0.2, 0.2])),
-                ("heading", num(0.785_398_163_397_448_3)),
-            ],
+            &[("at", at(0.0, -1.0)), ("size", Value::Vector([0.2, 0.2, 0.2])), ("heading", num(0.5 * NORTH))],
         ),
         part(
             "mover",
@@ -182,7 +178,7 @@ proptest! {
             x ^= x << 17;
             (x >> 11) as f64 / (1u64 << 53) as f64
         };
-        let starts: Vec<[f64; 3]> = (0..n).map(|_| [side * random(), side * random(), 6.28 * random()]).collect();
+        let starts: Vec<[f64; 3]> = (0..n).map(|_| [side * random(), side * random(), 4.0 * NORTH * random()]).collect();
         let parts = vec![body(0.1), holonomic(&[("max_speed", num(2.0))]), twist()];
         let mut rig = Rig::new(&scene(parts, vec![], &starts));
         let mut touching = std::collections::BTreeSet::new();

@@ -3,7 +3,7 @@
 
 use crate::scenes::*;
 use soifra_graph::Value;
-use soifra_runtime::{Platform, Scene};
+use soifra_runtime::Scene;
 
 /// Robots on a square lattice, four radii apart, as dense at every number.
 fn lattice(n: usize, parts: Vec<soifra_runtime::scene::Part>) -> Scene {
@@ -43,69 +43,86 @@ fn two_runs_are_alike() {
     assert!(a.1 > 0, "a crowd that touches");
 }
 
+/// Nanoseconds this thread has run: on a shared machine wall time says little.
+fn processor_time() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|t| t.parse().ok()).unwrap_or(f64::NAN)
+}
+
+/// Nanoseconds of processor time for each of `steps` steps of all robots of a scene.
+fn each(scene: &Scene, steps: usize, mut step: impl FnMut(&mut Rig, usize)) -> f64 {
+    let mut rig = Rig::new(scene);
+    let from = processor_time();
+    for i in 0..steps {
+        rig.readings.clear();
+        rig.reports.clear();
+        step(&mut rig, i);
+    }
+    (processor_time() - from) / (scene.robots.len() * steps) as f64
+}
+
+fn looks_random(i: usize, step: usize) -> f64 {
+    ((i * 7919 + step * 104_729) % 628) as f64 * 0.01
+}
+
 #[test]
 #[ignore = "prints figures; they mean something in a release build on a quiet machine"]
-#[allow(clippy::disallowed_methods)]
+#[allow(clippy::print_stdout)]
 fn swarm_figures() {
+    let wanted = std::env::var("SWARM").unwrap_or_default();
     for n in [100usize, 250, 1000, 10_000] {
-        let steps = 2_000_000 / n;
-        let s = lattice(n, walkers());
-        let from = std::time::Instant::now();
-        let (_, touched) = walk(&s, steps);
-        let each = from.elapsed().as_secs_f64() / (n * steps) as f64;
-        println!("strides  {n:6} robots: {:6.1} ns a robot-step, {touched} contacts", each * 1e9);
-    }
-    for n in [100usize, 250, 1000, 10_000] {
-        let steps = 1_000_000 / n;
-        let drive = holonomic(&[("max_speed", num(0.02))]);
-        let s =
-            lattice(n, vec![body(0.0025), drive, twist(), sensor("ideal_pose", &[("period", some(0.1))])]);
-        let from = std::time::Instant::now();
-        let mut rig = Rig::new(&s);
-        for step in 0..steps {
-            let t = step as f64 * 0.1;
-            rig.readings.clear();
-            rig.poll(t);
-            for i in 0..n {
-                let heading = ((i * 7919 + step * 104_729) % 628) as f64 * 0.01;
-                let (s, c) = libm::sincos(heading);
-                rig.send(t, i as u32, &[0.01 * c, 0.01 * s, 0.0, 0.0, 0.0, 0.0], t + 0.2);
-            }
-            rig.poll(t + 0.001);
+        let robots = 0..n as u32;
+        if wanted.is_empty() || wanted == "strides" {
+            // To and fro, so that the crowd stays as dense as it is.
+            let t = each(&lattice(n, walkers()), 300_000 / n, |rig, step| {
+                rig.poll(step as f64);
+                for i in robots.clone() {
+                    let heading =
+                        looks_random(i as usize, step / 2) + if step % 2 == 0 { 0.0 } else { 2.0 * NORTH };
+                    rig.send(step as f64, i, &[heading, 0.005], 1e9);
+                }
+            });
+            println!("strides, {n:6} robots: {t:7.1} ns a robot-step");
         }
-        let each = from.elapsed().as_secs_f64() / (n * steps) as f64;
-        println!("twists   {n:6} robots: {:6.1} ns a robot-step", each * 1e9);
-    }
-    for n in [100usize, 1000] {
-        let ir = sensor(
-            "infrared",
-            &[
-                ("bearings", list(&[0.0, 0.78, 1.57, 2.35, 3.14, -2.35, -1.57, -0.78])),
-                ("range", Value::Range(0.002, 0.01)),
-                ("period", num(0.02)),
-                ("latency", num(0.005)),
-                ("noise", normal(0.04)),
-            ],
-        );
-        let drive = wheels(&[
-            ("lag", num(0.06)),
-            ("wheel_acceleration", num(130.0)),
-            ("wheel_error", normal(0.005)),
-            ("rotation_error", normal(0.01)),
-        ]);
-        let s = lattice(n, vec![body(0.0025), drive, twist(), ir]);
-        let from = std::time::Instant::now();
-        let mut rig = Rig::new(&s);
-        let steps = 200_000 / n;
-        for step in 0..steps {
-            let t = step as f64 * 0.02;
-            rig.readings.clear();
-            rig.poll(t);
-            for i in 0..n {
-                rig.drive(t, i as u32, 0.01, 0.0, if i % 2 == 0 { 1.0 } else { -1.0 });
-            }
+        if wanted.is_empty() || wanted == "twists" {
+            let drive = holonomic(&[("max_speed", num(0.02))]);
+            let parts = vec![body(0.0025), drive, twist(), sensor("ideal_pose", &[("period", some(0.1))])];
+            let t = each(&lattice(n, parts), 300_000 / n, |rig, step| {
+                let t = step as f64 * 0.1;
+                rig.poll(t);
+                for i in robots.clone() {
+                    let (s, c) = libm::sincos(looks_random(i as usize, step / 10));
+                    let v = if step / 5 % 2 == 0 { 0.01 } else { -0.01 };
+                    rig.send(t, i, &[v * c, v * s, 0.0, 0.0, 0.0, 0.0], t + 0.2);
+                }
+            });
+            println!("twists,  {n:6} robots: {t:7.1} ns a robot-step");
         }
-        let each = from.elapsed().as_secs_f64() / (n * steps) as f64;
-        println!("wheels, 8 infrared beams, 20 ms: {n:6} robots: {:6.1} ns a robot-step", each * 1e9);
+        if wanted.is_empty() || wanted == "wheels" {
+            let ir = sensor(
+                "infrared",
+                &[
+                    (
+                        "bearings",
+                        list(&[0.0, 0.5, 1.0, 1.5, 2.0, 2.5, -0.5, -1.0].map(|quarters| quarters * NORTH)),
+                    ),
+                    ("range", Value::Range(0.002, 0.01)),
+                    ("period", num(0.02)),
+                    ("latency", num(0.005)),
+                    ("noise", normal(0.04)),
+                ],
+            );
+            let errors = [("wheel_error", normal(0.005)), ("rotation_error", normal(0.01))];
+            let drive =
+                wheels(&[&[("lag", num(0.06)), ("wheel_acceleration", num(130.0))], &errors[..]].concat());
+            let t = each(&lattice(n, vec![body(0.0025), drive, twist(), ir]), 100_000 / n, |rig, step| {
+                let t = step as f64 * 0.02;
+                rig.poll(t);
+                for i in robots.clone() {
+                    rig.drive(t, i, 0.01, 0.0, if i % 2 == 0 { 1.0 } else { -1.0 });
+                }
+            });
+            println!("wheels and 8 infrared beams every 20 ms, {n:6} robots: {t:7.1} ns a robot-step");
+        }
     }
 }

@@ -63,9 +63,6 @@ impl DriveModel for Model {
         })
     }
 
-    fn top_speed(&self) -> f64 {
-        if noise::is_none(self.0.wheel_error) { self.0.max_speed } else { 2.0 * self.0.max_speed }
-    }
     fn strides(&self) -> bool {
         false
     }

@@ -49,9 +49,6 @@ impl DriveModel for Model {
         })
     }
 
-    fn top_speed(&self) -> f64 {
-        if noise::is_none(self.0.error) { self.0.max_speed } else { 2.0 * self.0.max_speed }
-    }
     fn strides(&self) -> bool {
         true
     }

@@ -72,8 +72,6 @@ pub struct Stride {
 pub trait DriveModel: fmt::Debug {
     /// The drive of one robot; `source` names its stream of noise.
     fn drive(&self, seed: u64, source: &str) -> Box<dyn Drive>;
-    /// A body on it is never faster.
-    fn top_speed(&self) -> f64;
     /// Whether it can walk strides.
     fn strides(&self) -> bool;
     /// Whether it has two wheels to count pulses at.
