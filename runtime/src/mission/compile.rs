@@ -1,6 +1,6 @@
 //! Compiles agents: their units, arbiters and sub-goals.
 
-use super::{code::*, locals, uses::Uses};
+use super::{code::*, uses::Uses};
 use crate::nodes::{Act, Kind, MAX_DEPTH, Part, Tree};
 use soifra_graph::{
     Agent, Arbiter, Expr, Graph, PlanKind, PlanNode, Span, Stmt, Strategy, Timing, Trigger, Type, Unit,
@@ -23,7 +23,7 @@ pub(super) fn alone(c: &mut Compiler<'_>, e: &Expr, known: &[Type]) -> Compiled<
 
 /// A scope for one expression; what is known from outside lies at its beginning.
 fn scope_of(c: &mut Compiler<'_>, e: &Expr, known: &[Type]) -> Compiled<Scope> {
-    let scope = c.scope(&locals::of(e, known))?;
+    let scope = c.scope(&e.local_types(known))?;
     match (known.is_empty(), scope.local(0)) {
         (true, _) | (false, Some(0)) => Ok(scope),
         _ => damaged(e.span, "the index of an array has no place"),

@@ -3,7 +3,7 @@
 use super::{
     code::*,
     compile::{Compiled, alone, damaged},
-    locals, margin,
+    margin,
     uses::Uses,
 };
 use soifra_graph::{
@@ -56,7 +56,7 @@ fn expect(c: &mut Compiler<'_>, graph: &Graph, e: &Expectation) -> Compiled<Expe
         let holds = condition(c, e)?;
         let margin = match margin::of(e) {
             Some(m) => {
-                let mut scope = c.scope(&locals::of(&m, &[]))?;
+                let mut scope = c.scope(&m.local_types(&[]))?;
                 Some(c.expr(&mut scope, &m)?)
             }
             None => None,

@@ -4,7 +4,6 @@ pub(crate) mod code;
 mod compile;
 mod group;
 mod judge;
-pub(crate) mod locals;
 pub(crate) mod margin;
 mod scene;
 pub(crate) mod start;

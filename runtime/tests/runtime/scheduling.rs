@@ -23,7 +23,10 @@ agent ticker {
   service first every 200 ms priority 5 { set count = count + 1 note "first" }
 }
 "#);
-    assert_eq!(notes(&ran), ["0 first", "0 slow", "50 fast", "150 fast", "200 first", "200 slow", "250 fast"]);
+    assert_eq!(
+        notes(&ran),
+        ["0 first", "0 slow", "50 fast", "150 fast", "200 first", "200 slow", "250 fast"]
+    );
     assert_eq!(ran.report.outcome, soifra_runtime::Outcome::Timeout);
     assert_eq!(ran.report.sim_time_s, 0.3);
     ran.check_records();

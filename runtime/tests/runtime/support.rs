@@ -103,7 +103,9 @@ impl World {
         for (r, robot) in scene.robots.iter().enumerate() {
             for (s, part) in scene.platforms[robot.platform as usize].of_role("sensor").enumerate() {
                 if robot.consumed[s] {
-                    let period = part.optional("period").map_or(scene.step.unwrap_or(Time(1)), |p| Time::from_seconds(p).unwrap());
+                    let period = part
+                        .optional("period")
+                        .map_or(scene.step.unwrap_or(Time(1)), |p| Time::from_seconds(p).unwrap());
                     let latency = Time::from_seconds(part.number("latency")).unwrap();
                     let (robot, sensor) = (r as u32, s as u32);
                     sensors.push(Eye { robot, sensor, period: period.0, latency: latency.0, next: 0 });
@@ -139,7 +141,8 @@ impl Platform for World {
         }
         self.now = now;
         while let Some(first) = self.script.first() {
-            let (Report::ContactBegin { at, .. } | Report::ContactEnd { at, .. } | Report::Lost { at, .. }) = first;
+            let (Report::ContactBegin { at, .. } | Report::ContactEnd { at, .. } | Report::Lost { at, .. }) =
+                first;
             if *at > now {
                 break;
             }
@@ -257,7 +260,9 @@ impl Ran {
         self.records
             .iter()
             .filter_map(|r| match &r.event {
-                Event::Activation { unit, skipped: None, start, .. } => Some((start.0 / 1_000_000, unit.clone())),
+                Event::Activation { unit, skipped: None, start, .. } => {
+                    Some((start.0 / 1_000_000, unit.clone()))
+                }
                 _ => None,
             })
             .collect()
