@@ -1,0 +1,3 @@
+//! Tests of the language, in one binary.
+
+mod docs;
