@@ -33,6 +33,11 @@ fn infix(text: &str) -> (Infix, u8) {
     }
 }
 
+/// How tightly an operator binds.
+pub(crate) fn infix_power(text: &str) -> u8 {
+    infix(text).1
+}
+
 const COMPARISON: u8 = 4;
 const NOT: u8 = 3;
 const MINUS: u8 = 8;

@@ -11,7 +11,9 @@ use crate::{ast, code};
 use pest::Parser as _;
 use soifra_graph::{Diagnostic, Span};
 
-use grammar::{Grammar, Rule};
+use grammar::Grammar;
+pub(crate) use expr::infix_power;
+pub(crate) use grammar::Rule;
 
 #[allow(missing_docs, reason = "generated from the grammar, 2026-11")]
 mod grammar {
@@ -56,6 +58,13 @@ pub fn parse(file: u32, text: &str) -> (ast::File, Vec<Diagnostic>) {
         Err(e) => b.errors.push(message::syntax(file, 0, text, &e)),
     }
     (tree, b.errors)
+}
+
+/// The parse tree of a text; `None` when its syntax is wrong, which [`parse`] explains.
+pub(crate) fn tree(text: &str) -> Option<pest::iterators::Pair<'_, Rule>> {
+    nesting::check(text).ok()?;
+    let root = Grammar::parse(Rule::file, text).ok()?.next()?;
+    root.clone().into_inner().all(|p| p.as_rule() != Rule::junk).then_some(root)
 }
 
 impl Builder {
