@@ -1,3 +1,4 @@
 //! Tests of the language, in one binary.
 
 mod docs;
+mod format;

@@ -8,8 +8,8 @@ impl Builder<'_, '_> {
     pub fn behaviour(&mut self, rule: Rule, node: Node<'_>) {
         match rule {
             Rule::guarded | Rule::when_stmt | Rule::match_stmt_arm => self.guarded(node),
-            Rule::transition | Rule::on_enter | Rule::on_exit | Rule::action_halt => self.guarded(node),
-            Rule::if_stmt => self.guarded(node),
+            Rule::on_enter | Rule::on_exit | Rule::if_stmt => self.guarded(node),
+            Rule::transition => self.transition(node),
             Rule::body => self.body(node),
             _ => self.expression(rule, node),
         }
@@ -26,6 +26,33 @@ impl Builder<'_, '_> {
             },
             p => b.plain(p),
         });
+    }
+
+    /// A condition, where it leads, and what is done on the way.
+    fn transition(&mut self, node: Node<'_>) {
+        let mut head = true;
+        self.open();
+        self.parts(node, |b, p| match p {
+            Part::Own("->") => {
+                b.indent(2);
+                b.gap(Gap::Line);
+                b.token();
+                b.dedent();
+            }
+            Part::Child(c) => match c.as_rule() {
+                Rule::expr => b.guard(c),
+                Rule::block => {
+                    head = false;
+                    b.close();
+                    b.short_block(c);
+                }
+                _ => b.node(c),
+            },
+            p => b.plain(p),
+        });
+        if head {
+            self.close();
+        }
     }
 
     /// A condition: its own further lines are indented twice.

@@ -67,6 +67,7 @@ impl Measure {
 /// Columns of the comments before a token, and whether they break the line.
 fn comments(source: &Source<'_>, token: usize, hard: bool) -> (usize, bool) {
     let all = &source.comments[source.tokens[token].comments.clone()];
-    let broken = all.iter().any(|c| c.place(hard) != Place::Inline || c.text.contains('\n'));
+    let opened = source.opened(token);
+    let broken = all.iter().any(|c| c.place(hard, opened) != Place::Inline || c.text.contains('\n'));
     (all.iter().map(|c| c.text.chars().count() + 1).sum(), broken)
 }

@@ -9,7 +9,7 @@
 //! - One member, statement, state, arm, entry or record field a line. One blank line is kept between them
 //!   where the author left any; items in braces always have one around them.
 //! - A block stays on one line when it fits, holds a single plain statement (or sub-goal, or leaf of a
-//!   plan) and belongs to a guard, an arm, a transition, `on enter`, `on exit`, `on halt`, a goal or a plan
+//!   plan) and belongs to a guard, an arm, a transition, `on enter`, `on exit`, a goal or a plan
 //!   node. Enumerations stay on one line when they fit. All other blocks are broken.
 //! - A list in brackets that does not fit has one part a line; a list of plain numbers is filled.
 //! - A value that does not fit beside its `=`, `=>` or keyword moves to the next line, indented; but a list,

@@ -90,7 +90,7 @@ impl Printer<'_, '_> {
         // A line break that only a comment asks for continues a line.
         let level = self.level() + usize::from(!breaks);
         let comment_level = level + usize::from(breaks && closes);
-        let opened = token == 0 || matches!(source.tokens[token - 1].text, "(" | "[" | "{");
+        let opened = source.opened(token);
         let paragraph = comments.iter().any(|c| c.breaks > 1) || t.breaks > 1;
 
         // What is still to be done: a line break, and a blank line that the gap insists on.
@@ -98,20 +98,20 @@ impl Printer<'_, '_> {
         let mut blank = gap == Gap::Blank && !paragraph;
         let mut first = opened;
         for c in comments {
-            match c.place(members) {
+            match c.place(members, opened) {
                 Place::Own => {
                     self.line(comment_level, members && !first && (blank || c.breaks > 1));
                     (blank, first, pending, inline) = (false, false, true, false);
                 }
                 Place::Trailing => {
-                    self.write(if inline { " " } else { "  " });
+                    self.write("  ");
                     pending = true;
                 }
                 Place::Inline => {
                     if pending {
                         self.line(level, members && !first && (blank || c.breaks > 1));
                         (blank, first, pending) = (false, false, false);
-                    } else if inline || !opened || gap == Gap::Space {
+                    } else if inline || !opened || !matches!(gap, Gap::Tight | Gap::Soft) {
                         self.write(" ");
                     }
                     inline = true;

@@ -37,20 +37,17 @@ pub enum Place {
 }
 
 impl Comment<'_> {
-    /// Where it stands; `at_break` when the layout always breaks the line there.
-    pub fn place(&self, at_break: bool) -> Place {
+    /// Where it stands; `at_break` when the layout always breaks the line there, `opened` when that is right
+    /// after an opening bracket.
+    pub fn place(&self, at_break: bool, opened: bool) -> Place {
         match (self.breaks > 0, self.ends_line) {
             (true, true) => Place::Own,
             (false, true) => Place::Trailing,
-            // Between two members on one line: it belongs to the one before.
+            // On one line with the members around it: it belongs to the one before, if there is one.
+            (false, false) if at_break && opened => Place::Own,
             (false, false) if at_break => Place::Trailing,
             _ => Place::Inline,
         }
-    }
-
-    /// Whether the line must break at this comment.
-    pub fn breaks_line(&self) -> bool {
-        self.ends_line || self.text.contains('\n')
     }
 }
 
@@ -61,6 +58,11 @@ pub struct Source<'t> {
 }
 
 impl<'t> Source<'t> {
+    /// Whether a token comes right after an opening bracket, or first.
+    pub fn opened(&self, token: usize) -> bool {
+        token.checked_sub(1).is_none_or(|i| matches!(self.tokens[i].text, "(" | "[" | "{"))
+    }
+
     /// Cuts `text`, whose tree is `root`. Words and marks mean the same everywhere; where a number, a unit
     /// or a text ends only the grammar knows.
     pub fn read(root: &Pair<'t, Rule>, text: &'t str) -> Source<'t> {

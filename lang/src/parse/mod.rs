@@ -11,8 +11,8 @@ use crate::{ast, code};
 use pest::Parser as _;
 use soifra_graph::{Diagnostic, Span};
 
-use grammar::Grammar;
 pub(crate) use expr::infix_power;
+use grammar::Grammar;
 pub(crate) use grammar::Rule;
 
 #[allow(missing_docs, reason = "generated from the grammar, 2026-11")]
@@ -104,8 +104,7 @@ impl Builder {
     }
 
     pub fn span(&self, pair: &pest::iterators::Pair<'_, Rule>) -> Span {
-        let s = pair.as_span();
-        Span::new(self.file, s.start(), s.start() + s.as_str().trim_end().len())
+        Span::new(self.file, pair.as_span().start(), end(pair))
     }
 
     pub fn ident(&mut self, c: &mut Cursor<'_>) -> ast::Ident {
@@ -142,6 +141,27 @@ impl Builder {
             0
         })
     }
+}
+
+/// Where a pair ends: blanks and comments after its last token belong to what comes next.
+fn end(pair: &pest::iterators::Pair<'_, Rule>) -> usize {
+    let (start, text) = (pair.as_span().start(), pair.as_str().trim_end());
+    let last_line = &text[text.rfind('\n').map_or(0, |i| i + 1)..];
+    if !text.ends_with("*/") && !last_line.contains("//") {
+        return start + text.len();
+    }
+    let mut kept = text.len();
+    for inner in pair.clone().into_inner().rev() {
+        let span = inner.as_span();
+        if span.end() < start + kept {
+            break;
+        }
+        if inner.as_rule() != Rule::COMMENT {
+            return end(&inner);
+        }
+        kept = text[..span.start().saturating_sub(start).min(text.len())].trim_end().len();
+    }
+    start + kept
 }
 
 /// The text of a string literal without its quotes.
