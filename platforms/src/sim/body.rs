@@ -1,10 +1,10 @@
 //! Bodies and how they move: a trajectory is a row of pieces of constant velocity, each known from its
-//! start to its end, in integer nanoseconds.
+//! start to its end, in integer nanoseconds. Between two pieces, and after the last, a body rests.
 //!
 //! A position is always computed from the start of its piece, never from where somebody last looked. So
 //! neither polling nor the instants of collision checks can change it by a bit.
 
-use super::geometry::Vec2;
+use super::geometry::{Vec2, turned};
 use soifra_runtime::Time;
 
 /// Constant velocity for a while.
@@ -49,39 +49,50 @@ pub fn seconds(a: i64, b: i64) -> f64 {
 impl Piece {
     /// Standing still from `start` on.
     pub fn rest(start: i64, from: Place) -> Piece {
-        Piece::moving(start, i64::MAX, from, [0.0; 2], 0.0, 0.0)
+        Piece::sliding(start, i64::MAX, from, [0.0; 2], 0.0)
     }
 
-    /// Moving from `start` to `end`.
-    pub fn moving(start: i64, end: i64, from: Place, velocity: Vec2, turn: f64, speed: f64) -> Piece {
-        // Of a turning piece no more than the heading is kept: most of them nobody looks at.
-        let (s, c) = if turn == 0.0 { libm::sincos(0.5 * from.heading) } else { (0.0, 1.0) };
+    /// Moving and turning from `start` to `end`. Of a turning piece no more than the heading is kept: most
+    /// of them nobody looks at.
+    pub fn turning(start: i64, end: i64, from: Place, velocity: Vec2, turn: f64, speed: f64) -> Piece {
         let Place { at, heading, path } = from;
-        Piece { start, end, at, heading, velocity, turn, path, speed, half: [s, c] }
+        if turn == 0.0 {
+            return Piece { velocity, ..Piece::sliding(start, end, from, [0.0; 2], speed) };
+        }
+        Piece { start, end, at, heading, velocity, turn, path, speed, half: [0.0, 1.0] }
     }
 
-    /// Straight ahead, backwards when the speed is negative.
-    pub fn walking(start: i64, end: i64, from: Place, speed: f64) -> Piece {
-        let mut piece = Piece::moving(start, end, from, [0.0; 2], 0.0, speed.abs());
-        let [z, w] = piece.half;
-        piece.velocity = [speed * (w * w - z * z), speed * (2.0 * w * z)];
-        piece
+    /// Moving without a turn: velocities ahead and to the left, and their norm.
+    pub fn sliding(start: i64, end: i64, from: Place, way: Vec2, speed: f64) -> Piece {
+        let Place { at, heading, path } = from;
+        let (z, w) = libm::sincos(0.5 * heading);
+        let velocity = turned(way, w * w - z * z, 2.0 * w * z);
+        Piece { start, end, at, heading, velocity, turn: 0.0, path, speed, half: [z, w] }
     }
 
-    /// Standing still where this one ends, in its heading there.
-    pub fn then_rest(&self) -> Piece {
-        let from = self.place(self.end);
-        match self.turn == 0.0 {
-            true => Piece {
-                start: self.end,
-                end: i64::MAX,
-                at: from.at,
-                velocity: [0.0; 2],
-                path: from.path,
-                speed: 0.0,
-                ..*self
-            },
-            false => Piece::rest(self.end, from),
+    /// As [`Piece::sliding`], for a body that last moved as `before` says: mostly in the same heading.
+    pub fn sliding_after(before: &Piece, start: i64, end: i64, from: Place, way: Vec2, speed: f64) -> Piece {
+        if before.turn != 0.0 || before.heading != from.heading {
+            return Piece::sliding(start, end, from, way, speed);
+        }
+        let ([z, w], Place { at, path, .. }) = (before.half, from);
+        let velocity = turned(way, w * w - z * z, 2.0 * w * z);
+        Piece { start, end, at, velocity, path, speed, ..*before }
+    }
+
+    /// Resting where this one ends, until `end`.
+    fn rest_until(&self, end: i64) -> Piece {
+        let Place { at, heading, path } = self.place(self.end);
+        Piece {
+            start: self.end,
+            end,
+            at,
+            heading,
+            velocity: [0.0; 2],
+            turn: 0.0,
+            path,
+            speed: 0.0,
+            half: self.half,
         }
     }
 
@@ -108,52 +119,53 @@ impl Piece {
 /// An upright cylinder that may move.
 #[derive(Debug, Clone)]
 pub struct Body {
-    /// What it is called.
-    pub name: String,
+    /// The last piece. Apart from `past`, so that asking about the present stays in one place of memory.
+    current: Piece,
+    /// Pieces before, as far as the search for contacts may still need them.
+    past: Vec<Piece>,
     /// Radius.
     pub radius: f64,
     /// Height of its base and of its top over the ground of the world.
     pub span: [f64; 2],
     /// How much infrared it reflects.
     pub reflectance: f64,
-    /// By start; the last one has no end or reaches beyond the present.
-    pieces: Vec<Piece>,
+    /// What it is called.
+    pub name: String,
 }
 
 impl Body {
     /// A body that stands still.
     pub fn new(name: String, radius: f64, span: [f64; 2], reflectance: f64, at: Place) -> Body {
-        Body { name, radius, span, reflectance, pieces: vec![Piece::rest(0, at)] }
+        Body { current: Piece::rest(0, at), past: Vec::new(), radius, span, reflectance, name }
     }
 
-    /// Whether two bodies stand at one height.
-    pub fn level_with(&self, span: [f64; 2]) -> bool {
-        self.span[0] <= span[1] && span[0] <= self.span[1]
-    }
-
-    /// The pieces since the last collision check, at least.
-    pub fn pieces(&self) -> &[Piece] {
-        &self.pieces
-    }
-
-    /// The piece in force at `t`; of two that meet there, the later.
-    pub fn piece(&self, t: i64) -> &Piece {
-        let mut last = self.pieces.len() - 1;
-        while last > 0 && self.pieces[last].start > t {
-            last -= 1;
+    /// The pieces from the one in force at `from` to the one in force at `to`, rests between them included.
+    pub fn pieces(&self, from: i64, to: i64) -> Pieces<'_> {
+        let n = self.past.len();
+        // Most often the last piece has been in force all the while.
+        let mut next = n;
+        while next > 0 && self.nth(next).start > from {
+            next -= 1;
         }
-        &self.pieces[last]
+        Pieces { body: self, next, resting: false, from, to }
+    }
+
+    /// Of the past pieces and the current one, in this order.
+    fn nth(&self, i: usize) -> &Piece {
+        self.past.get(i).unwrap_or(&self.current)
+    }
+
+    /// The piece in force at `t`, or before it when the body rests then; of two that meet there, the later.
+    fn piece(&self, t: i64) -> &Piece {
+        if self.current.start <= t {
+            return &self.current;
+        }
+        self.past.iter().rfind(|p| p.start <= t).or(self.past.first()).unwrap_or(&self.current)
     }
 
     /// Where it is at `t`.
     pub fn place(&self, t: i64) -> Place {
         self.piece(t).place(t)
-    }
-
-    /// Path walked up to `t`.
-    pub fn path(&self, t: i64) -> f64 {
-        let piece = self.piece(t);
-        piece.path + piece.speed * seconds(piece.start, t.min(piece.end))
     }
 
     /// Pose in `map` at `t`: x y z qx qy qz qw.
@@ -169,31 +181,72 @@ impl Body {
         [w * w - z * z, 2.0 * w * z]
     }
 
+    /// The last piece.
+    pub fn last(&self) -> &Piece {
+        &self.current
+    }
+
     /// The end of what is planned.
     pub fn planned(&self) -> i64 {
-        self.pieces[self.pieces.len() - 1].end
+        self.current.end
     }
 
-    /// Drops what was planned from `t` on.
+    /// Ends what is planned at `t`, which is not before the start of the last piece.
     pub fn cut(&mut self, t: i64) {
-        while self.pieces.len() > 1 && self.pieces[self.pieces.len() - 1].start >= t {
-            self.pieces.pop();
-        }
-        let last = self.pieces.len() - 1;
-        self.pieces[last].end = self.pieces[last].end.min(t);
+        self.current.end = self.current.end.min(t);
     }
 
-    /// Appends a piece that starts where the last one ends; forgets those that ended before `checked`.
+    /// Goes on with a piece: from its start on, nothing else is planned. Forgets what ended before `checked`.
     pub fn push(&mut self, piece: Piece, checked: i64) {
-        if self.pieces.len() >= 4 && self.pieces[0].end < checked {
-            let stale = self.pieces.iter().take_while(|p| p.end < checked).count();
-            self.pieces.drain(..stale.min(self.pieces.len() - 1));
+        self.cut(piece.start);
+        if self.current.start < piece.start {
+            if self.past.len() >= 3 && self.past[0].end < checked {
+                // The last of them may still be in force, resting, at `checked`.
+                let stale = self.past.iter().take_while(|p| p.end < checked).count();
+                self.past.drain(..stale - 1);
+            }
+            self.past.push(self.current);
         }
-        let last = self.pieces.len() - 1;
-        if self.pieces[last].start >= piece.start {
-            self.pieces[last] = piece;
-        } else {
-            self.pieces.push(piece);
+        self.current = piece;
+    }
+}
+
+/// The pieces of a span of time, see [`Body::pieces`].
+#[derive(Debug)]
+pub struct Pieces<'a> {
+    body: &'a Body,
+    next: usize,
+    /// The rest after the piece before `next` comes first.
+    resting: bool,
+    from: i64,
+    to: i64,
+}
+
+impl Iterator for Pieces<'_> {
+    type Item = Piece;
+
+    fn next(&mut self) -> Option<Piece> {
+        loop {
+            let last = self.body.past.len();
+            if self.resting {
+                self.resting = false;
+                let before = self.body.nth(self.next - 1);
+                let until = if self.next > last { i64::MAX } else { self.body.nth(self.next).start };
+                if before.end < until && until >= self.from && before.end < self.to {
+                    return Some(before.rest_until(until));
+                }
+            }
+            if self.next > last {
+                return None;
+            }
+            let piece = self.body.nth(self.next);
+            if piece.start > self.to {
+                return None;
+            }
+            (self.next, self.resting) = (self.next + 1, true);
+            if piece.end >= self.from {
+                return Some(*piece);
+            }
         }
     }
 }

@@ -10,7 +10,7 @@
 
 use super::{
     body::{Body, Piece},
-    geometry::{Aabb, Interval, norm, sub, within},
+    geometry::{Aabb, Interval, Vec2, norm, sub, within},
     index::{Neighbours, Spot},
     scene::Things,
 };
@@ -25,10 +25,13 @@ const PAIRS: (usize, usize) = (2, 6);
 #[derive(Debug)]
 pub struct Collisions {
     robots: usize,
+    /// By body: radius, and height of base and top.
+    forms: Vec<(f64, [f64; 2])>,
     pairs: Vec<Pair>,
     /// Contacts are known up to here; before the first sweep, nowhere.
     checked: i64,
-    /// By body: how far it has walked since the pairs were gathered, and how far it may.
+    /// By body: where it is, how far it has walked since the pairs were gathered, and how far it may.
+    at: Vec<Vec2>,
     walked: Vec<f64>,
     margins: Vec<Margin>,
     /// How far every body may walk beyond what it has walked when pairs are gathered.
@@ -74,8 +77,10 @@ impl Collisions {
         let radius = bodies.iter().map(|b| b.radius).sum::<f64>() / bodies.len().max(1) as f64;
         Collisions {
             robots,
+            forms: bodies.iter().map(|b| (b.radius, b.span)).collect(),
             pairs: Vec::new(),
             checked: -1,
+            at: vec![[0.0; 2]; bodies.len()],
             walked: vec![0.0; bodies.len()],
             // Nobody may walk before the first gathering.
             margins: vec![Margin { from: 0.0, allowed: -1.0 }; bodies.len()],
@@ -124,29 +129,42 @@ impl Collisions {
         let from = self.checked.max(0);
         self.checked = to;
         let mut within = true;
-        for ((walked, margin), body) in self.walked.iter_mut().zip(&self.margins).zip(bodies) {
-            *walked = body.path(to) - margin.from;
-            within &= *walked <= margin.allowed;
+        for (i, body) in bodies.iter().enumerate() {
+            let place = body.place(to);
+            self.at[i] = place.at;
+            self.walked[i] = place.path - self.margins[i].from;
+            within &= self.walked[i] <= self.margins[i].allowed;
         }
         if !within {
-            self.gather(bodies, things, from, to);
+            self.gather(bodies, things, from);
         }
         let mut pairs = std::mem::take(&mut self.pairs);
         for pair in &mut pairs {
-            let other = match pair.other {
-                Other::Body(o) => self.walked[o as usize],
-                Other::Thing(_) => 0.0,
+            let me = pair.robot as usize;
+            let walked = match pair.other {
+                Other::Body(o) => self.walked[me] + self.walked[o as usize],
+                Other::Thing(_) => self.walked[me],
             };
-            if pair.gap <= self.walked[pair.robot as usize] + other {
+            if pair.gap > walked {
+                continue;
+            }
+            let distance = match pair.other {
+                Other::Body(o) => norm(sub(self.at[me], self.at[o as usize])) - self.forms[o as usize].0,
+                Other::Thing(o) => things.all[o as usize].shape.distance(self.at[me]),
+            };
+            let gap = distance - self.forms[me].0 - HYSTERESIS;
+            // From one gap to another by that much walking, the least gap between is half of what is left.
+            if pair.gap - walked + gap <= 0.0 {
                 self.examine(pair, bodies, things, from, to);
             }
+            pair.gap = if pair.touching { f64::NEG_INFINITY } else { gap + walked };
         }
         self.pairs = pairs;
     }
 
-    /// Gathers the pairs that can touch from `from` on, while nobody walks farther than until `to` and some
-    /// more.
-    fn gather(&mut self, bodies: &[Body], things: &Things, from: i64, to: i64) {
+    /// Gathers the pairs that can touch from `from` on, while nobody walks farther than it has by now and
+    /// some more.
+    fn gather(&mut self, bodies: &[Body], things: &Things, from: i64) {
         let mut touching: Vec<(u32, Other)> =
             self.pairs.iter().filter(|p| p.touching).map(|p| (p.robot, p.other)).collect();
         touching.sort_unstable();
@@ -155,20 +173,20 @@ impl Collisions {
         };
         self.pairs.clear();
         let spots = bodies.iter().enumerate().map(|(i, b)| {
-            let place = b.place(from);
-            self.walked[i] = b.path(to) - place.path;
+            let (place, walked) = (b.place(from), self.margins[i].from + self.walked[i]);
+            self.walked[i] = walked - place.path;
             let allowed = self.walked[i] + self.spare;
             self.margins[i] = Margin { from: place.path, allowed };
             Spot { at: place.at, reach: b.radius + allowed + HYSTERESIS, item: i as u32 }
         });
         let robots = self.robots as u32;
-        let pairs = &mut self.pairs;
+        let (pairs, forms) = (&mut self.pairs, &self.forms);
         self.neighbours.fill(spots);
         self.neighbours.each(|a, b, distance| {
             let (robot, other) = (a.min(b), a.max(b));
-            let (x, y) = (&bodies[robot as usize], &bodies[other as usize]);
-            if robot < robots && x.level_with(y.span) {
-                let gap = distance - x.radius - y.radius - HYSTERESIS;
+            let ((radius, span), (other_radius, other_span)) = (forms[robot as usize], forms[other as usize]);
+            if robot < robots && level(span, other_span) {
+                let gap = distance - radius - other_radius - HYSTERESIS;
                 let other = Other::Body(other);
                 pairs.push(Pair { robot, other, touching: was_touching(robot, other), gap });
             }
@@ -180,7 +198,7 @@ impl Collisions {
                 things.grid.query(&Aabb::around(at, reach), |j| {
                     let thing = &things.all[j as usize];
                     let gap = thing.shape.distance(at) - body.radius - HYSTERESIS;
-                    if body.level_with(thing.span) && gap <= self.margins[i].allowed {
+                    if level(body.span, thing.span) && gap <= self.margins[i].allowed {
                         let (robot, other) = (i as u32, Other::Thing(j));
                         pairs.push(Pair { robot, other, touching: was_touching(robot, other), gap });
                     }
@@ -198,37 +216,31 @@ impl Collisions {
     fn examine(&mut self, pair: &mut Pair, bodies: &[Body], things: &Things, from: i64, to: i64) {
         let robot = &bodies[pair.robot as usize];
         let (mut touching, mut events) = (pair.touching, std::mem::take(&mut self.events));
-        let (gap, other_walked) = match pair.other {
+        match pair.other {
             Other::Body(o) => {
                 let other = &bodies[o as usize];
                 let reach = robot.radius + other.radius;
-                stretches(robot.pieces(), other.pieces(), from, to, |s, a, b| {
+                stretches(robot.pieces(from, to), other.pieces(from, to), from, to, |s, a, b| {
                     let p = sub(a.place(s.start).at, b.place(s.start).at);
                     let v = sub(a.velocity, b.velocity);
                     s.contacts(&mut touching, |gap| within(p, v, reach + gap), &mut events);
                 });
-                (norm(sub(robot.place(to).at, other.place(to).at)) - other.radius, self.walked[o as usize])
             }
             Other::Thing(o) => {
                 let shape = &things.all[o as usize].shape;
-                for a in robot.pieces() {
+                for a in robot.pieces(from, to) {
                     if let Some(s) = Stretch::new(a.start, a.end, from, to) {
                         let contact = |gap| shape.overlap(a.at, a.velocity, robot.radius + gap);
                         s.contacts(&mut touching, contact, &mut events);
                     }
                 }
-                (shape.distance(robot.place(to).at), 0.0)
             }
-        };
+        }
         for (at, begin) in events.drain(..) {
             self.report(pair, bodies, things, at, begin);
         }
         self.events = events;
         pair.touching = touching;
-        pair.gap = match touching {
-            true => f64::NEG_INFINITY,
-            false => gap - robot.radius - HYSTERESIS + self.walked[pair.robot as usize] + other_walked,
-        };
     }
 
     fn report(&mut self, pair: &Pair, bodies: &[Body], things: &Things, at: i64, begin: bool) {
@@ -251,6 +263,11 @@ impl Collisions {
             false => Report::ContactEnd { at, robot, other, with },
         });
     }
+}
+
+/// Whether two things stand at one height somewhere.
+fn level(a: [f64; 2], b: [f64; 2]) -> bool {
+    a[0] <= b[1] && b[0] <= a[1]
 }
 
 /// A stretch of time in which two move at constant velocity, and the part of it that is examined.
@@ -306,30 +323,27 @@ impl Stretch {
 }
 
 /// Calls `f` for every stretch of constant velocities of two trajectories that has a part in `from..=to`.
-fn stretches(a: &[Piece], b: &[Piece], from: i64, to: i64, mut f: impl FnMut(Stretch, &Piece, &Piece)) {
-    let (mut i, mut j) = (first(a, from), first(b, from));
-    while i < a.len() && j < b.len() {
-        let (p, q) = (&a[i], &b[j]);
+fn stretches(
+    mut a: impl Iterator<Item = Piece>,
+    mut b: impl Iterator<Item = Piece>,
+    from: i64,
+    to: i64,
+    mut f: impl FnMut(Stretch, &Piece, &Piece),
+) {
+    let (mut piece, mut other) = (a.next(), b.next());
+    while let (Some(p), Some(q)) = (&piece, &other) {
         let (start, end) = (p.start.max(q.start), p.end.min(q.end));
-        if start > to {
-            return;
-        }
         if start <= end
             && let Some(s) = Stretch::new(start, end, from, to)
         {
             f(s, p, q);
         }
         if p.end <= q.end {
-            i += 1;
+            piece = a.next();
         } else {
-            j += 1;
+            other = b.next();
         }
     }
-}
-
-/// The first piece that does not end before `from`.
-fn first(pieces: &[Piece], from: i64) -> usize {
-    pieces.iter().position(|p| p.end >= from).unwrap_or(pieces.len())
 }
 
 fn order(r: &Report) -> (Time, u32, u32) {

@@ -36,7 +36,7 @@ const LARGEST: f64 = 1e12;
 #[derive(Debug)]
 pub struct Simulator {
     now: i64,
-    /// All motion is planned up to here.
+    /// All motion is planned up to here, at least.
     planned: i64,
     /// Robots, then movers.
     bodies: Vec<Body>,
@@ -94,14 +94,17 @@ impl Simulator {
         if t <= self.planned {
             return;
         }
-        self.planned = t;
+        self.planned = i64::MAX;
         let checked = self.collisions.checked();
         for i in &self.continuous {
-            self.drives[*i as usize].extend(&mut self.bodies[*i as usize], t, checked);
+            let body = &mut self.bodies[*i as usize];
+            self.drives[*i as usize].extend(body, t, checked);
+            self.planned = self.planned.min(body.planned());
         }
         let movers = &mut self.bodies[self.drives.len()..];
         for (mover, body) in self.movers.iter_mut().zip(movers) {
             mover.extend(body, t, checked);
+            self.planned = self.planned.min(body.planned());
         }
     }
 
@@ -134,6 +137,7 @@ impl Simulator {
         let (now, checked) = (self.now, self.collisions.checked());
         if let Some((drive, body)) = self.robot(robot) {
             drive.stop(body, now, checked);
+            self.planned = now;
         }
     }
 }
@@ -168,12 +172,16 @@ impl Platform for Simulator {
                 let twist = [*a, *b, *c, *d, *e, *f].map(limited);
                 if let Some((drive, body)) = self.robot(robot) {
                     drive.twist(body, now, twist, expires.0, checked);
+                    let planned = body.planned();
+                    self.planned = self.planned.min(planned);
                 }
             }
             (Some(Actuator::Strides { duration }), [heading, length]) => {
                 let stride = Stride { heading: limited(*heading), length: limited(*length), duration };
                 if let Some((drive, body)) = self.robot(robot) {
                     drive.stride(body, now, stride, expires.0, checked);
+                    let planned = body.planned();
+                    self.planned = self.planned.min(planned);
                 }
             }
             _ => self.stop(robot),

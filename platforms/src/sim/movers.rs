@@ -8,7 +8,7 @@ use super::{
     noise::Stream,
 };
 use soifra_runtime::Time;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// No piece of a mover's way is shorter (ns), but for the last before a turn: a bound on the number of
 /// events of a run.
@@ -122,7 +122,7 @@ impl ToAndFro {
         let dt = seconds(t, end);
         from.heading = libm::atan2(way[1], way[0]);
         let speed = norm(way) / dt;
-        body.push(Piece::moving(t, end, from, [way[0] / dt, way[1] / dt], 0.0, speed), checked);
+        body.push(Piece::sliding(t, end, from, [speed, 0.0], speed), checked);
         self.next = next + 1;
     }
 }
@@ -194,19 +194,24 @@ impl Wanderer {
             self.heading = TAU * self.noise.uniform();
         }
         let turn = t.saturating_add(self.turn_period - t % self.turn_period);
-        // A few reflections at one place (a corner, a narrow gap) are one; then it waits for the next turn.
-        for _ in 0..4 {
+        // After a few reflections at one place (a corner, a narrowing gap) it goes back the way it came, and if
+        // even that is barred waits for the next turn.
+        let back = from.heading + PI;
+        for attempt in 0..6 {
+            if attempt == 5 {
+                self.heading = back;
+            }
             let (s, c) = libm::sincos(self.heading);
             let velocity = [self.speed * c, self.speed * s];
             from.heading = self.heading;
             let Some((dt, n)) = self.first_hit(from.at, velocity, seconds(t, turn)) else {
-                return body.push(Piece::moving(t, turn, from, velocity, 0.0, self.speed), checked);
+                return body.push(Piece::sliding(t, turn, from, [self.speed, 0.0], self.speed), checked);
             };
             let k = 2.0 * dot(velocity, n);
             self.heading = libm::atan2(velocity[1] - k * n[1], velocity[0] - k * n[0]);
             let end = t.saturating_add((dt * 1e9) as i64).min(turn);
             if end - t >= SHORTEST {
-                return body.push(Piece::moving(t, end, from, velocity, 0.0, self.speed), checked);
+                return body.push(Piece::sliding(t, end, from, [self.speed, 0.0], self.speed), checked);
             }
         }
         let mut rest = Piece::rest(t, from);

@@ -228,6 +228,28 @@ fn odometry_of_strides_is_in_odom() {
 }
 
 #[test]
+fn odometry_of_a_holonomic_body_follows_its_arcs() {
+    let parts = vec![
+        body(0.1),
+        holonomic(&[("error", normal(0.05))]),
+        twist(),
+        sensor("odometry", &[("pulse", num(1e-6)), ("period", num(0.1))]),
+    ];
+    let mut rig = Rig::new(&scene(parts, vec![], &[[5.0, 5.0, NORTH]]));
+    rig.drive(0.0, 0, 0.5, 0.0, 1.0);
+    rig.drive(NORTH, 0, 0.0, 0.3, 0.0);
+    rig.drive(NORTH + 1.0, 0, 0.0, 0.0, 0.0);
+    rig.poll(4.0);
+    // A quarter of a circle of 0.5 m to the left, then sideways, which is backwards in odom.
+    let o = rig.latest(0, 0);
+    close(o[0], 0.5 - 0.3, 1e-5);
+    close(o[1], 0.5, 1e-5);
+    close(2.0 * libm::atan2(o[5], o[6]), NORTH, 1e-6);
+    // On the ground it went otherwise.
+    assert!((rig.place(0)[0] - 4.5).abs() + (rig.place(0)[1] - 5.2).abs() > 1e-3);
+}
+
+#[test]
 fn a_sensor_captures_the_world_of_its_instant() {
     let mover = part(
         "mover",

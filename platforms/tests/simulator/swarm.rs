@@ -69,12 +69,14 @@ fn looks_random(i: usize, step: usize) -> f64 {
 #[ignore = "prints figures; they mean something in a release build on a quiet machine"]
 #[allow(clippy::print_stdout)]
 fn swarm_figures() {
+    // `SWARM=strides SWARM_SIZE=250` for one of them.
     let wanted = std::env::var("SWARM").unwrap_or_default();
-    for n in [100usize, 250, 1000, 10_000] {
+    let size = std::env::var("SWARM_SIZE").ok().and_then(|n| n.parse().ok());
+    for n in [100usize, 250, 1000, 10_000].into_iter().filter(|n| size.is_none_or(|s: usize| s == *n)) {
         let robots = 0..n as u32;
         if wanted.is_empty() || wanted == "strides" {
             // To and fro, so that the crowd stays as dense as it is.
-            let t = each(&lattice(n, walkers()), 300_000 / n, |rig, step| {
+            let t = each(&lattice(n, walkers()), 100_000 / n, |rig, step| {
                 rig.poll(step as f64);
                 for i in robots.clone() {
                     let heading =
@@ -87,7 +89,7 @@ fn swarm_figures() {
         if wanted.is_empty() || wanted == "twists" {
             let drive = holonomic(&[("max_speed", num(0.02))]);
             let parts = vec![body(0.0025), drive, twist(), sensor("ideal_pose", &[("period", some(0.1))])];
-            let t = each(&lattice(n, parts), 300_000 / n, |rig, step| {
+            let t = each(&lattice(n, parts), 100_000 / n, |rig, step| {
                 let t = step as f64 * 0.1;
                 rig.poll(t);
                 for i in robots.clone() {

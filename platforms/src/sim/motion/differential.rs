@@ -34,10 +34,7 @@ impl Model {
             wheel_radius,
             wheel_base: args.positive("wheel_base")?,
             max_speed: args.positive("max_speed")?,
-            lag: Lag {
-                tau: args.at_least_zero("lag")?,
-                limit: args.positive("wheel_acceleration")? * wheel_radius,
-            },
+            lag: Lag::new(args.at_least_zero("lag")?, args.positive("wheel_acceleration")? * wheel_radius),
             wheel_error: args.distribution("wheel_error")?,
             rotation_error: args.distribution("rotation_error")?,
         })))
@@ -59,6 +56,7 @@ impl DriveModel for Model {
             factor,
             turning: 0.0,
             turn_factor: 1.0,
+            planned: None,
             noise,
         })
     }
@@ -87,12 +85,19 @@ pub struct Differential {
     /// Sign of the turn under way; 0 when going straight.
     turning: f64,
     turn_factor: f64,
+    /// Speeds and travel at the end of the planned piece, once worked out.
+    planned: Option<(i64, [(f64, f64); 2])>,
     noise: Option<Box<Stream>>,
 }
 
 impl Differential {
     /// Speeds and travel at `t`.
     fn wheels(&self, t: i64) -> [(f64, f64); 2] {
+        if let Some((end, wheels)) = self.planned
+            && end == t
+        {
+            return wheels;
+        }
         let dt = seconds(self.since, t);
         std::array::from_fn(|i| {
             let (v, d) = self.model.lag.follow(self.speed[i], self.target[i], dt);
@@ -111,12 +116,12 @@ impl Differential {
                 self.factor[i] = noise.factor(self.model.wheel_error);
             }
         }
-        self.since = t;
+        (self.since, self.planned) = (t, None);
     }
 
     /// New speeds to follow. A turn begins when the wheels are told to differ, or to differ the other way.
     fn aim(&mut self, target: [f64; 2], expires: i64) {
-        (self.target, self.expires) = (target, expires);
+        (self.target, self.expires, self.planned) = (target, expires, None);
         let rate = (target[1] - target[0]) / self.model.wheel_base;
         let turning = if rate.abs() < NO_TURN { 0.0 } else { rate.signum() };
         if turning != self.turning {
@@ -141,16 +146,17 @@ impl Differential {
         let straight = self.target[0] * self.factor[0] == self.target[1] * self.factor[1];
         if steady && straight && noise::is_none(self.model.wheel_error) {
             let speed = self.target[0] * self.factor[0];
-            return body.push(Piece::walking(t, self.expires, from, speed), checked);
+            return body.push(Piece::sliding(t, self.expires, from, [speed, 0.0], speed.abs()), checked);
         }
         let end = next_substep(t).min(self.expires);
         let dt = span(t, end);
         let wheels = self.wheels(end);
+        self.planned = Some((end, wheels));
         let ground: [f64; 2] = std::array::from_fn(|i| (wheels[i].1 - self.travel[i]) * self.factor[i]);
         let ahead = 0.5 * (ground[0] + ground[1]);
         let turn = (ground[1] - ground[0]) / self.model.wheel_base * self.turn_factor;
         let velocity = chord(from.heading, ahead, 0.0, turn, dt);
-        body.push(Piece::moving(t, end, from, velocity, turn / dt, ahead.abs() / dt), checked);
+        body.push(Piece::turning(t, end, from, velocity, turn / dt, ahead.abs() / dt), checked);
     }
 }
 
@@ -171,7 +177,6 @@ impl Drive for Differential {
         let scale = (self.model.max_speed / (ahead.abs() + half.abs())).min(1.0);
         self.aim([(ahead - half) * scale, (ahead + half) * scale], expires);
         let from = body.place(now);
-        body.cut(now);
         self.plan(body, now, from, checked);
     }
 

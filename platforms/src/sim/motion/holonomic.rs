@@ -4,10 +4,11 @@ use super::{Drive, DriveModel, Lag, Stride, Travel, chord, next_substep, span, s
 use crate::sim::{
     args::Args,
     body::{Body, Piece, Place, seconds},
-    geometry::{along, turned},
+    geometry::{Vec2, along, norm, turned},
     noise::{self, Stream},
 };
 use soifra_graph::Distribution;
+use soifra_runtime::Time;
 use std::sync::Arc;
 
 /// Parameters, by platform.
@@ -28,7 +29,7 @@ impl Model {
         Ok(Model(Arc::new(Parameters {
             max_speed: args.positive("max_speed")?,
             max_turn: args.at_least_zero("max_turn")?,
-            lag: Lag { tau: args.at_least_zero("lag")?, limit: f64::INFINITY },
+            lag: Lag::new(args.at_least_zero("lag")?, f64::INFINITY),
             error: args.distribution("error")?,
         })))
     }
@@ -40,7 +41,7 @@ impl DriveModel for Model {
             model: Arc::clone(&self.0),
             since: 0,
             velocity: [0.0; 3],
-            reckoned: ([0.0; 2], 0.0),
+            reckoned: Reckoned::default(),
             target: [0.0; 3],
             expires: i64::MAX,
             walking: false,
@@ -65,21 +66,33 @@ pub struct Holonomic {
     /// Velocity and reckoning are those of this instant (ns).
     since: i64,
     velocity: [f64; 3],
-    /// Position and heading in odom, as the robot can reckon: without the errors of the drive.
-    reckoned: ([f64; 2], f64),
     target: [f64; 3],
     expires: i64,
-    /// A stride is under way until it expires: no lag, and rest after it is planned already.
+    /// A stride is under way until it expires: no lag, and rest after it.
     walking: bool,
     factor: [f64; 2],
+    reckoned: Reckoned,
     noise: Option<Box<Stream>>,
+}
+
+/// Where the robot reckons it is: without the errors of the drive.
+#[derive(Debug, Clone, Copy, Default)]
+struct Reckoned {
+    /// Since the start, along the axes of map.
+    at: Vec2,
+    /// In map.
+    heading: f64,
+    /// Heading at the start, known with the first command.
+    origin: Option<f64>,
+    /// Velocity in map, while it is constant.
+    straight: Option<Vec2>,
 }
 
 impl Holonomic {
     /// Velocity at `t`, and the way ahead, to the left and turned since then.
     fn state(&self, t: i64) -> ([f64; 3], [f64; 3]) {
         if self.walking {
-            let dt = seconds(self.since, t.min(self.expires));
+            let dt = seconds(self.since, t.min(self.expires)).max(0.0);
             let over = t >= self.expires;
             return (if over { [0.0; 3] } else { self.velocity }, self.velocity.map(|v| v * dt));
         }
@@ -91,14 +104,22 @@ impl Holonomic {
         (velocity, way)
     }
 
-    fn reckon(&self, way: [f64; 3]) -> ([f64; 2], f64) {
-        let (at, heading) = self.reckoned;
-        (along(at, chord(heading, way[0], way[1], way[2], 1.0), 1.0), heading + way[2])
+    /// Position and heading reckoned at `t`, when this is the way since then.
+    fn reckon(&self, way: [f64; 3], t: i64) -> (Vec2, f64) {
+        let Reckoned { at, heading, straight, .. } = self.reckoned;
+        match straight {
+            Some(v) => (along(at, v, seconds(self.since, t.min(self.expires)).max(0.0)), heading),
+            None if way == [0.0; 3] => (at, heading),
+            None => (along(at, chord(heading, way[0], way[1], way[2], 1.0), 1.0), heading + way[2]),
+        }
     }
 
     fn advance(&mut self, t: i64) {
-        let (velocity, way) = self.state(t);
-        self.reckoned = self.reckon(way);
+        let (velocity, way) = match self.reckoned.straight {
+            Some(_) if !self.walking => (self.velocity, [0.0; 3]),
+            _ => self.state(t),
+        };
+        (self.reckoned.at, self.reckoned.heading) = self.reckon(way, t);
         (self.velocity, self.since) = (velocity, t);
     }
 
@@ -111,29 +132,48 @@ impl Holonomic {
     /// Plans one piece from `t`, the instant of the velocity, on.
     fn plan(&mut self, body: &mut Body, t: i64, from: Place, checked: i64) {
         if t >= self.expires {
-            (self.target, self.expires) = ([0.0; 3], i64::MAX);
+            (self.target, self.expires, self.walking) = ([0.0; 3], i64::MAX, false);
         }
         if self.model.lag.tau == 0.0 {
             self.velocity = self.target;
         }
+        self.reckoned.straight = None;
         let v = self.velocity;
         let steady = v == self.target;
         if steady && v == [0.0; 3] {
             return body.push(Piece::rest(t, from), checked);
         }
         if steady && v[2] == 0.0 {
-            let (s, c) = libm::sincos(from.heading);
-            let ground = turned([v[0] * self.factor[0], v[1] * self.factor[0]], c, s);
-            let speed = libm::hypot(ground[0], ground[1]);
-            return body.push(Piece::moving(t, self.expires, from, ground, 0.0, speed), checked);
+            let way = [v[0] * self.factor[0], v[1] * self.factor[0]];
+            let piece = Piece::sliding_after(body.last(), t, self.expires, from, way, norm(way));
+            self.reckoned.straight =
+                Some(match self.reckoned.heading == from.heading && self.factor[0] == 1.0 {
+                    true => piece.velocity,
+                    false => chord(self.reckoned.heading, v[0], v[1], 0.0, 1.0),
+                });
+            return body.push(piece, checked);
         }
         let end = next_substep(t).min(self.expires);
         let dt = span(t, end);
         let (_, way) = self.state(end);
         let (ahead, left, turn) = (way[0] * self.factor[0], way[1] * self.factor[0], way[2] * self.factor[1]);
         let velocity = chord(from.heading, ahead, left, turn, dt);
-        let speed = libm::hypot(ahead, left) / dt;
-        body.push(Piece::moving(t, end, from, velocity, turn / dt, speed), checked);
+        let speed = norm([ahead, left]) / dt;
+        body.push(Piece::turning(t, end, from, velocity, turn / dt, speed), checked);
+    }
+
+    /// Up to `now`, for a command.
+    fn command(&mut self, body: &mut Body, now: i64, checked: i64) -> Place {
+        // After a stride a body rests without a plan for it.
+        if !self.walking {
+            self.extend(body, now, checked);
+        }
+        let place = body.place(now);
+        if self.reckoned.origin.is_none() {
+            (self.reckoned.origin, self.reckoned.heading) = (Some(place.heading), place.heading);
+        }
+        self.advance(now);
+        place
     }
 }
 
@@ -148,34 +188,33 @@ impl Drive for Holonomic {
 
     /// Ahead, left and turn count; too fast a twist is slowed down in its direction.
     fn twist(&mut self, body: &mut Body, now: i64, twist: [f64; 6], expires: i64, checked: i64) {
-        self.extend(body, now, checked);
-        self.advance(now);
-        let scale = (self.model.max_speed / libm::hypot(twist[0], twist[1])).min(1.0);
+        let from = self.command(body, now, checked);
+        let scale = (self.model.max_speed / norm([twist[0], twist[1]])).min(1.0);
         let turn = twist[5].clamp(-self.model.max_turn, self.model.max_turn);
         let target = [twist[0] * scale, twist[1] * scale, turn];
         if self.walking || target != self.target {
             self.draw();
         }
         (self.target, self.expires, self.walking) = (target, expires, false);
-        let from = body.place(now);
-        body.cut(now);
         self.plan(body, now, from, checked);
     }
 
     fn stride(&mut self, body: &mut Body, now: i64, command: Stride, expires: i64, checked: i64) {
-        self.extend(body, now, checked);
-        self.advance(now);
+        self.command(body, now, checked);
         self.draw();
-        self.reckoned.1 += command.heading - body.place(now).heading;
         let (speed, end) =
             stride::walk(body, now, command, expires, self.model.max_speed, self.factor[0], checked);
         self.target = [0.0; 3];
         (self.velocity, self.expires, self.walking) = ([speed, 0.0, 0.0], end, true);
+        let [c, s] = body.direction(Time(now));
+        (self.reckoned.heading, self.reckoned.straight) = (command.heading, Some([speed * c, speed * s]));
     }
 
     fn travel(&self, t: i64) -> Travel {
         let (_, way) = self.state(t);
-        let (at, heading) = self.reckon(way);
-        Travel::Pose { at, heading }
+        let (at, heading) = self.reckon(way, t);
+        let origin = self.reckoned.origin.unwrap_or(heading);
+        let (s, c) = libm::sincos(-origin);
+        Travel::Pose { at: turned(at, c, s), heading: heading - origin }
     }
 }

@@ -1,5 +1,8 @@
 //! A speed that follows its target.
 
+use super::SUBSTEP;
+use crate::sim::body::seconds;
+
 /// First-order lag with a limit on the acceleration: v' = clamp((target - v) / tau, ±limit). In closed
 /// form, so that the result does not depend on how a span of time is cut up (but for rounding).
 #[derive(Debug, Clone, Copy)]
@@ -7,13 +10,20 @@ pub struct Lag {
     /// Time constant in seconds; 0 follows at the limit.
     pub tau: f64,
     /// Greatest acceleration; infinite for none.
-    pub limit: f64,
+    limit: f64,
+    /// What has gone of a difference after one substep.
+    substep: f64,
 }
 
 /// Nearer than this (m/s or rad/s) the target counts as reached.
 const REACHED: f64 = 1e-9;
 
 impl Lag {
+    /// With a time constant and a limit.
+    pub fn new(tau: f64, limit: f64) -> Lag {
+        Lag { tau, limit, substep: gone(seconds(0, SUBSTEP), tau) }
+    }
+
     /// The speed after `dt` seconds, and the distance covered.
     pub fn follow(&self, v: f64, target: f64, dt: f64) -> (f64, f64) {
         let error = target - v;
@@ -38,8 +48,12 @@ impl Lag {
         if self.tau == 0.0 {
             return (target, target * dt);
         }
-        // 1 - e^(-dt / tau), without cancellation.
-        let gone = -libm::expm1(-dt / self.tau);
+        let gone = if dt == seconds(0, SUBSTEP) { self.substep } else { gone(dt, self.tau) };
         (v + (target - v) * gone, target * dt + (v - target) * self.tau * gone)
     }
+}
+
+/// 1 - e^(-dt / tau), without cancellation.
+fn gone(dt: f64, tau: f64) -> f64 {
+    -libm::expm1(-dt / tau)
 }

@@ -3,7 +3,7 @@
 use super::Stride;
 use crate::sim::body::{Body, Piece, seconds};
 
-/// Plans a stride of a robot that turns freely: it faces the heading at once, walks, and rests. Longer
+/// Plans a stride of a robot that turns freely: it faces the heading at once, walks, and then rests. Longer
 /// strides than `top_speed` allows fall short; `scale` is the error of the drive. A stride that would go
 /// on beyond `expires` is broken off there.
 ///
@@ -19,15 +19,9 @@ pub fn walk(
 ) -> (f64, i64) {
     let mut from = body.place(now);
     from.heading = stride.heading;
-    body.cut(now);
     let end = now.saturating_add(stride.duration).min(expires);
     let speed = (stride.length / seconds(0, stride.duration)).clamp(-top_speed, top_speed);
-    if end <= now || speed == 0.0 {
-        body.push(Piece::rest(now, from), checked);
-        return (0.0, now);
-    }
-    let piece = Piece::walking(now, end, from, speed * scale);
-    body.push(piece, checked);
-    body.push(piece.then_rest(), checked);
+    let ground = speed * scale;
+    body.push(Piece::sliding(now, end, from, [ground, 0.0], ground.abs()), checked);
     (speed, end)
 }
