@@ -239,7 +239,7 @@ impl Run<'_, '_> {
         subgoals: &mut [u8],
     ) -> Result<(), Fault> {
         self.perhaps(plan.prelude)?;
-        let result = nodes::tick(&plan.tree, memory, &mut PlanHost { run: self, plan })?;
+        let result = nodes::tick(&plan.tree, memory, &mut PlanHost { run: self, plan }).map_err(|f| *f)?;
         if let Some(s) = plan.subgoal {
             let now = match result {
                 Status::Success => ACHIEVED,
@@ -278,33 +278,43 @@ struct PlanHost<'r, 'a, 'i> {
 }
 
 impl PlanHost<'_, '_, '_> {
-    fn code(&self, code: Code) -> Result<Block, Fault> {
-        let malformed = Fault { kind: FaultKind::Malformed, at: Span::default() };
-        self.plan.code.get(code as usize).copied().ok_or(malformed)
+    /// Runs a piece of code and returns the first register of its result.
+    #[inline(always)]
+    fn evaluate(&mut self, code: Code) -> Result<f64, Box<Fault>> {
+        let Some(block) = self.plan.code.get(code as usize) else { return Err(malformed()) };
+        let run = &mut *self.run;
+        match run.program.run(block, run.frame, &mut run.memory, &mut run.env) {
+            Ok(()) => Ok(run.frame.get(block.result as usize).copied().unwrap_or(0.0)),
+            Err(fault) => Err(Box::new(fault)),
+        }
     }
 }
 
+#[cold]
+fn malformed() -> Box<Fault> {
+    Box::new(Fault { kind: FaultKind::Malformed, at: Span::default() })
+}
+
 impl Host for PlanHost<'_, '_, '_> {
-    type Fault = Fault;
+    /// Boxed, because every node returns one or a status.
+    type Fault = Box<Fault>;
 
     fn now(&self) -> Time {
         self.run.env.instant.now
     }
 
-    fn holds(&mut self, code: Code) -> Result<bool, Fault> {
-        let block = self.code(code)?;
-        self.run.holds(&block)
+    #[inline(always)]
+    fn holds(&mut self, code: Code) -> Result<bool, Box<Fault>> {
+        Ok(self.evaluate(code)? != 0.0)
     }
 
-    fn duration(&mut self, code: Code) -> Result<Time, Fault> {
-        let block = self.code(code)?;
-        let s = self.run.number(&block)?;
+    fn duration(&mut self, code: Code) -> Result<Time, Box<Fault>> {
+        let s = self.evaluate(code)?;
         Ok(Time::from_seconds(s.max(0.0)).unwrap_or(Time::MAX))
     }
 
-    fn run(&mut self, code: Code) -> Result<(), Fault> {
-        let block = self.code(code)?;
-        self.run.block(&block)
+    fn run(&mut self, code: Code) -> Result<(), Box<Fault>> {
+        self.evaluate(code).map(|_| ())
     }
 
     fn ended(&mut self, node: u32, how: Ended) {

@@ -95,11 +95,29 @@ pub fn halt<H: Host>(tree: &Tree, memory: Memory<'_>, host: &mut H) -> Result<()
 
 impl<H: Host> Ticker<'_, H> {
     /// Ticks a node and keeps its status.
+    #[inline(always)]
     fn tick(&mut self, node: u32) -> Result<Status, H::Fault> {
+        match self.tree.kind(node) {
+            // Most nodes of most trees are conditions: they are spared the call.
+            Kind::Check(condition) => {
+                let result = self.check(condition)?;
+                let kept = (result as u8) << 2;
+                let status = &mut self.memory.status[node as usize];
+                if *status != kept {
+                    *status = kept;
+                    self.host.ended(node, Ended::With(result));
+                }
+                Ok(result)
+            }
+            kind => self.tick_any(node, kind),
+        }
+    }
+
+    fn tick_any(&mut self, node: u32, kind: Kind) -> Result<Status, H::Fault> {
         let n = node as usize;
         let before = self.memory.status[n];
         let fresh = before & 3 != Status::Running as u8;
-        let result = match self.tree.kind(node) {
+        let result = match kind {
             Kind::Sequence { memory } => self.sequence(node, memory, fresh),
             Kind::Fallback { memory } => self.fallback(node, memory, fresh),
             Kind::Parallel { successes } => self.parallel(node, successes, fresh),

@@ -173,8 +173,9 @@ impl Platform for World {
         let body = &mut self.robots[robot as usize];
         if command.len() == 2 {
             let (heading, length) = (command[0], command[1]);
-            body.pose[0] += length * libm_cos(heading);
-            body.pose[1] += length * libm_sin(heading);
+            let (sin, cos) = quarter_turns(heading);
+            body.pose[0] += length * cos;
+            body.pose[1] += length * sin;
             body.path += length;
         } else if actuator == 0 {
             body.velocity = [command[0], command[1]];
@@ -193,16 +194,8 @@ impl Platform for World {
     }
 }
 
-fn libm_cos(x: f64) -> f64 {
-    soifra_libm(x).1
-}
-
-fn libm_sin(x: f64) -> f64 {
-    soifra_libm(x).0
-}
-
 /// Sine and cosine by multiples of a right angle, which is all that pawns turn to here.
-fn soifra_libm(x: f64) -> (f64, f64) {
+fn quarter_turns(x: f64) -> (f64, f64) {
     match (x / std::f64::consts::FRAC_PI_2).round() as i64 % 4 {
         0 => (0.0, 1.0),
         1 | -3 => (1.0, 0.0),
