@@ -52,12 +52,17 @@ impl<'a> Decls<'a> {
                     if *own && !module.own {
                         continue;
                     }
-                    errors.push(
-                        Diagnostic::error(code::DUPLICATE, format!("`{}` is declared twice", name.name))
-                            .at(name.span, "the second")
+                    let d = Diagnostic::error(code::DUPLICATE, format!("`{}` is declared twice", name.name));
+                    errors.push(if first.file == name.span.file {
+                        d.at(name.span, "the second")
                             .at(*first, "the first")
-                            .hint("give one of them another name"),
-                    );
+                            .hint("give one of them another name")
+                    } else {
+                        // The root file comes first, and is where the user is looking.
+                        d.at(*first, "declared here")
+                            .at(name.span, "and in this file, which is imported")
+                            .hint("a name means one thing in all files: give one of them another name")
+                    });
                     continue;
                 }
                 seen.insert(name.name.clone(), (name.span, module.own));

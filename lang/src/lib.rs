@@ -69,7 +69,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         graph = None;
     }
     diagnostics.append(&mut later);
-    let tests = test_case::collect(&decls, &mut diagnostics);
+    let tests = test_case::collect(&decls, graph.as_ref(), &mut diagnostics);
     if let Some(g) = &graph {
         diagnostics.extend(verify(g));
     }

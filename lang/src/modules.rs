@@ -45,7 +45,7 @@ impl Program {
     pub fn load(path: &str, text: &str, loader: &mut dyn Loader) -> Program {
         let mut p = Program::default();
         p.add(path, text.to_string(), true);
-        p.follow(0, loader, &mut vec![normal(path)]);
+        p.follow(0, loader, &mut vec![(normal(path), Span::default())]);
         p.add("std/prelude.soi", STANDARD[0].1.to_string(), false);
         for (path, text) in loader.library() {
             p.add(&path, text, false);
@@ -71,8 +71,9 @@ impl Program {
         file
     }
 
-    /// Loads what module `from` imports; `open` are the files between the root and it, itself last.
-    fn follow(&mut self, from: usize, loader: &mut dyn Loader, open: &mut Vec<String>) {
+    /// Loads what module `from` imports; `open` are the files between the root and it, itself last, each with
+    /// the import that led to it.
+    fn follow(&mut self, from: usize, loader: &mut dyn Loader, open: &mut Vec<(String, Span)>) {
         let imports = std::mem::take(&mut self.modules[from].tree.imports);
         for import in &imports {
             if import.is_file {
@@ -106,7 +107,7 @@ impl Program {
         from: usize,
         import: &ast::Import,
         loader: &mut dyn Loader,
-        open: &mut Vec<String>,
+        open: &mut Vec<(String, Span)>,
     ) {
         let folder = self.sources[from].path.rsplit_once('/').map_or("", |(f, _)| f).to_string();
         let joined = if folder.is_empty() || import.path.starts_with('/') {
@@ -115,14 +116,17 @@ impl Program {
             format!("{folder}/{}", import.path)
         };
         let path = normal(&joined);
-        if let Some(at) = open.iter().position(|o| *o == path) {
-            let mut ring: Vec<&str> = open[at..].iter().map(String::as_str).collect();
+        if let Some(at) = open.iter().position(|(o, _)| *o == path) {
+            let mut ring: Vec<&str> = open[at..].iter().map(|(o, _)| o.as_str()).collect();
             ring.push(&path);
-            self.errors.push(
-                Diagnostic::error(code::IMPORT_CYCLE, "files import each other in a ring")
-                    .at(import.span, ring.join(" → "))
-                    .hint("move what both need into a third file"),
-            );
+            let ring = ring.join(" → ");
+            let d = Diagnostic::error(code::IMPORT_CYCLE, "files import each other in a ring");
+            // The root file's own import comes first: that is where the user is looking.
+            let d = match open.get(1) {
+                Some((_, first)) => d.at(*first, ring).at(import.span, "leads back"),
+                None => d.at(import.span, ring),
+            };
+            self.errors.push(d.hint("move what both need into a third file"));
             return;
         }
         if self.sources.iter().any(|s| normal(&s.path) == path) {
@@ -139,7 +143,7 @@ impl Program {
         match loader.load(&path) {
             Ok(text) => {
                 let file = self.add(&path, text, true);
-                open.push(path);
+                open.push((path, import.span));
                 self.follow(file, loader, open);
                 open.pop();
             }

@@ -1,11 +1,12 @@
 //! `test` blocks: runs of a mission and what is expected of them.
 
 use crate::{
-    ast::{ExprKind, Test},
+    ast::{Expr, ExprKind, Mission, MissionMember, Test},
     code,
     decls::{Decls, unknown},
+    parse_value,
 };
-use soifra_graph::{Binary, Diagnostic, Name, Span};
+use soifra_graph::{Binary, Diagnostic, Dim, Graph, Name, Span, typing};
 
 /// A test: every seed must give the outcome, and every comparison of a metric must hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,19 +29,19 @@ pub struct TestCase {
 
 const OUTCOMES: &[&str] = &["success", "failed", "timeout", "aborted"];
 
-/// The tests of all files.
-pub fn collect(decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Vec<TestCase> {
-    decls.tests.iter().filter_map(|t| one(t, decls, errors)).collect()
+/// The tests of all files. `graph` is that of the mission that was checked, for the types of its members.
+pub fn collect(decls: &Decls<'_>, graph: Option<&Graph>, errors: &mut Vec<Diagnostic>) -> Vec<TestCase> {
+    decls.tests.iter().filter_map(|t| one(t, decls, graph, errors)).collect()
 }
 
-fn one(t: &Test, decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Option<TestCase> {
+fn one(t: &Test, decls: &Decls<'_>, graph: Option<&Graph>, errors: &mut Vec<Diagnostic>) -> Option<TestCase> {
     let [run] = t.run.as_slice() else {
         let d = Diagnostic::error(code::TEST, "a test runs one mission")
             .at(t.name.span, format!("{} `run` here", t.run.len()));
         errors.push(d.hint("write `run MISSION` once"));
         return None;
     };
-    if !decls.missions.iter().any(|(_, m)| m.name.name == run.name) {
+    let Some((_, mission)) = decls.missions.iter().find(|(_, m)| m.name.name == run.name) else {
         errors.push(unknown(
             code::UNKNOWN_NAME,
             "mission",
@@ -49,7 +50,8 @@ fn one(t: &Test, decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Option<Test
             decls.missions.iter().map(|(_, m)| &*m.name.name),
         ));
         return None;
-    }
+    };
+    let graph = graph.filter(|g| g.name == run.name);
     let seeds = match &t.seeds {
         None => (1, 1),
         Some(e) => {
@@ -76,7 +78,16 @@ fn one(t: &Test, decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Option<Test
     };
     let mut sets = Vec::new();
     for s in &t.sets {
+        if !parameters(decls, mission).any(|p| *p == s.name.name) {
+            let known: Vec<&str> = parameters(decls, mission).map(|p| &**p).collect();
+            errors.push(unknown(code::UNKNOWN_NAME, "parameter", &s.name.name, s.name.span, known));
+            return None;
+        }
         let text = match &*s.value.kind {
+            ExprKind::Neg(x) if matches!(&*x.kind, ExprKind::Quantity(..)) => {
+                let (v, dim) = quantity(&s.value)?;
+                format!("{v} {}", dim.si_unit()).trim().to_string()
+            }
             ExprKind::Name(n) => n.to_string(),
             ExprKind::Bool(b) => b.to_string(),
             ExprKind::Quantity(v, dim, _) => format!("{v} {}", dim.si_unit()).trim().to_string(),
@@ -90,6 +101,17 @@ fn one(t: &Test, decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Option<Test
                 return None;
             }
         };
+        if let Some(p) = graph.and_then(|g| g.params.iter().find(|p| p.name == s.name.name)) {
+            if let Some(Err(why)) = graph.map(|g| parse_value(&text, &p.ty, &g.types)) {
+                errors.push(
+                    Diagnostic::error(code::MISMATCH, format!("{} is wanted: {why}", p.ty))
+                        .at(s.value.span, "set here")
+                        .at(p.at, format!("declared as {}", p.ty))
+                        .hint("write a value of the parameter's type, with its unit"),
+                );
+                return None;
+            }
+        }
         sets.push((s.name.name.clone(), text));
     }
     let outcome = match &t.outcome {
@@ -103,14 +125,37 @@ fn one(t: &Test, decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Option<Test
     let mut expects = Vec::new();
     for e in &t.expects {
         let parts = match &*e.kind {
-            ExprKind::Binary(op, a, b) => match (&*a.kind, &*b.kind) {
-                (ExprKind::Name(n), ExprKind::Quantity(v, _, _)) => Some((n.clone(), *op, *v)),
+            ExprKind::Binary(op, a, b) if compares(*op) => match (&*a.kind, quantity(b)) {
+                (ExprKind::Name(n), Some(bound)) => Some((n.clone(), *op, bound, a.span, b.span)),
                 _ => None,
             },
             _ => None,
         };
         match parts {
-            Some(p) => expects.push(p),
+            Some((name, op, (bound, dim), at, bound_at)) => {
+                let metrics = || {
+                    mission.members.iter().filter_map(|m| match m {
+                        MissionMember::Metric(k) => Some(&k.name.name),
+                        _ => None,
+                    })
+                };
+                if !metrics().any(|m| *m == name) {
+                    errors.push(unknown(code::UNKNOWN_NAME, "metric", &name, at, metrics().map(|m| &**m)));
+                    return None;
+                }
+                let metric = graph.and_then(|g| g.metrics.iter().find(|m| m.name == name));
+                let have = metric.and_then(|m| typing::number(&m.value.ty)).filter(|d| *d != dim);
+                if let (Some(have), Some(m)) = (have, metric) {
+                    errors.push(
+                        Diagnostic::error(code::OPERANDS, format!("`{name}` is a {}", m.value.ty))
+                            .at(bound_at, dim.to_string())
+                            .at(m.at, format!("declared here, in {}", unit_of(have)))
+                            .hint(format!("write the bound in {}", unit_of(have))),
+                    );
+                    return None;
+                }
+                expects.push((name, op, bound));
+            }
             None => {
                 errors.push(
                     Diagnostic::error(code::TEST, "a test compares a metric with a value")
@@ -130,4 +175,33 @@ fn one(t: &Test, decls: &Decls<'_>, errors: &mut Vec<Diagnostic>) -> Option<Test
         expects,
         at: t.name.span,
     })
+}
+
+/// The parameters of a mission: those of all files and its own.
+fn parameters<'a>(decls: &'a Decls<'_>, mission: &'a Mission) -> impl Iterator<Item = &'a Name> {
+    let own = mission.members.iter().filter_map(|m| match m {
+        MissionMember::Param(p) => Some(&p.name.name),
+        _ => None,
+    });
+    decls.params.iter().map(|p| &p.name.name).chain(own)
+}
+
+/// A quantity that is written out, with its sign.
+fn quantity(e: &Expr) -> Option<(f64, Dim)> {
+    match &*e.kind {
+        ExprKind::Quantity(v, dim, _) => Some((*v, *dim)),
+        ExprKind::Neg(x) => match &*x.kind {
+            ExprKind::Quantity(v, dim, _) => Some((-*v, *dim)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+fn compares(op: Binary) -> bool {
+    matches!(op, Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne)
+}
+
+fn unit_of(dim: Dim) -> String {
+    if dim == Dim::NONE { "plain numbers".into() } else { dim.si_unit() }
 }

@@ -62,25 +62,39 @@ fn together(g: &Graph, agents: &[u32], robot: Option<&RobotGroup>, out: &mut Vec
     for (actuator, list) in &writers {
         match arbiters.get(actuator).map(Vec::as_slice).unwrap_or_default() {
             [] if list.len() > 1 => {
-                let mut d = Diagnostic::error(code::SEVERAL_WRITERS, format!("{} units command `{actuator}` and nobody decides between them", list.len()));
+                let mut d = Diagnostic::error(
+                    code::SEVERAL_WRITERS,
+                    format!("{} units command `{actuator}` and nobody decides between them", list.len()),
+                );
                 for (a, u, at) in list {
                     d = d.at(*at, format!("`{}` commands it", unit(*a, *u)));
                 }
                 let names: Vec<String> = list.iter().map(|(a, u, _)| unit(*a, *u)).collect();
-                out.push(d.hint(format!("say who wins: `arbitrate {actuator} by switch [{}]`, or by priority, layers or blend", names.join(", "))));
+                out.push(d.hint(format!(
+                    "say who wins: `arbitrate {actuator} by switch [{}]`, or by priority, layers or blend",
+                    names.join(", ")
+                )));
             }
             [] => {}
             [(_, x)] => through(g, actuator, list, x, agents, &unit, out),
             [(_, first), rest @ ..] => {
-                let mut d = Diagnostic::error(code::ARBITER_SOURCE, format!("`{actuator}` has several arbiters"));
+                let mut d =
+                    Diagnostic::error(code::ARBITER_SOURCE, format!("`{actuator}` has several arbiters"));
                 for (_, x) in rest {
                     d = d.at(x.at, "one more");
                 }
-                out.push(d.at(first.at, "the first").hint("one arbiter decides for one actuator: put all sources into it"));
+                out.push(
+                    d.at(first.at, "the first")
+                        .hint("one arbiter decides for one actuator: put all sources into it"),
+                );
             }
         }
         if list.is_empty() {
-            let port = agents.iter().filter_map(|i| g.agents.get(*i as usize)).flat_map(|a| &a.actuators).find(|p| p.name == *actuator);
+            let port = agents
+                .iter()
+                .filter_map(|i| g.agents.get(*i as usize))
+                .flat_map(|a| &a.actuators)
+                .find(|p| p.name == *actuator);
             if let (Some(p), Some(_)) = (port, robot) {
                 out.push(
                     Diagnostic::warning(code::UNUSED_ACTUATOR, format!("nobody commands `{actuator}`"))
@@ -93,29 +107,46 @@ fn together(g: &Graph, agents: &[u32], robot: Option<&RobotGroup>, out: &mut Vec
 }
 
 /// Checks that an arbiter's sources are exactly the actuator's writers.
-fn through(g: &Graph, actuator: &Name, list: &[Writer], x: &Arbiter, agents: &[u32], unit: &dyn Fn(u32, u32) -> String, out: &mut Vec<Diagnostic>) {
+fn through(
+    g: &Graph,
+    actuator: &Name,
+    list: &[Writer],
+    x: &Arbiter,
+    agents: &[u32],
+    unit: &dyn Fn(u32, u32) -> String,
+    out: &mut Vec<Diagnostic>,
+) {
     for (a, u, at) in list {
         if !x.sources.iter().any(|s| (s.agent, s.unit) == (*a, *u)) {
             out.push(
-                Diagnostic::error(code::ARBITER_SOURCE, format!("`{}` commands `{actuator}` past its arbiter", unit(*a, *u)))
-                    .at(*at, "commands it here")
-                    .at(x.at, "decides between others only")
-                    .hint(format!("add `{}` to the arbiter's sources", unit(*a, *u))),
+                Diagnostic::error(
+                    code::ARBITER_SOURCE,
+                    format!("`{}` commands `{actuator}` past its arbiter", unit(*a, *u)),
+                )
+                .at(*at, "commands it here")
+                .at(x.at, "decides between others only")
+                .hint(format!("add `{}` to the arbiter's sources", unit(*a, *u))),
             );
         }
     }
     for s in &x.sources {
         if !agents.contains(&s.agent) {
             out.push(
-                Diagnostic::error(code::ARBITER_SOURCE, format!("`{}` does not run on this robot", g.source_name(s)))
-                    .at(s.at, "listed here")
-                    .hint("let the robot run that agent too, or take it out of the arbiter"),
+                Diagnostic::error(
+                    code::ARBITER_SOURCE,
+                    format!("`{}` does not run on this robot", g.source_name(s)),
+                )
+                .at(s.at, "listed here")
+                .hint("let the robot run that agent too, or take it out of the arbiter"),
             );
         } else if !list.iter().any(|(a, u, _)| (s.agent, s.unit) == (*a, *u)) {
             out.push(
-                Diagnostic::error(code::ARBITER_SOURCE, format!("`{}` never commands `{actuator}`", g.source_name(s)))
-                    .at(s.at, "listed here")
-                    .hint("take it out of the arbiter, or let it command the actuator"),
+                Diagnostic::error(
+                    code::ARBITER_SOURCE,
+                    format!("`{}` never commands `{actuator}`", g.source_name(s)),
+                )
+                .at(s.at, "listed here")
+                .hint("take it out of the arbiter, or let it command the actuator"),
             );
         }
     }

@@ -46,13 +46,30 @@ fn complete(p: &Platform, out: &mut Vec<Diagnostic>) {
     }
 }
 
-#[allow(clippy::too_many_arguments, reason = "one call site a kind of port; a struct would only rename them, 2026-11")]
-fn port_on(a: &Agent, b: &AgentBinding, r: &RobotGroup, p: &Platform, port: &Port, role: &str, lacks: &'static str, out: &mut Vec<Diagnostic>) {
+#[allow(
+    clippy::too_many_arguments,
+    reason = "one call site a kind of port; a struct would only rename them, 2026-11"
+)]
+fn port_on(
+    a: &Agent,
+    b: &AgentBinding,
+    r: &RobotGroup,
+    p: &Platform,
+    port: &Port,
+    role: &str,
+    lacks: &'static str,
+    out: &mut Vec<Diagnostic>,
+) {
     match p.of_role(role).find(|c| c.name == port.name) {
         None => {
-            let same: Vec<&str> = p.of_role(role).filter(|c| c.ty.as_ref().is_some_and(|t| fits(t, &port.ty))).map(|c| &*c.name).collect();
+            let same: Vec<&str> = p
+                .of_role(role)
+                .filter(|c| c.ty.as_ref().is_some_and(|t| fits(t, &port.ty)))
+                .map(|c| &*c.name)
+                .collect();
             let all: Vec<&str> = p.of_role(role).map(|c| &*c.name).collect();
-            let mut d = unknown(lacks, &format!("{role} on {}:", p.name), &port.name, port.span, all.iter().copied());
+            let mut d =
+                unknown(lacks, &format!("{role} on {}:", p.name), &port.name, port.span, all.iter().copied());
             d.title = format!("`{}` on `{}` has no {role} `{}`", r.name, p.name, port.name);
             d.labels[0].text = format!("`{}` needs it", a.name);
             let d = d.at(b.at, format!("`{}` runs it", r.name));
@@ -68,10 +85,16 @@ fn port_on(a: &Agent, b: &AgentBinding, r: &RobotGroup, p: &Platform, port: &Por
             let Some(have) = &c.ty else { return };
             if !fits(have, &port.ty) {
                 out.push(
-                    Diagnostic::error(code::PORT_TYPE, format!("{role} `{}` of `{}` has another type", port.name, p.name))
-                        .at(port.span, format!("{} is wanted", port.ty))
-                        .at(c.at, format!("{have} is what it gives"))
-                        .hint(format!("declare `{role} {}: {have}` in the agent, or choose a platform that fits", port.name)),
+                    Diagnostic::error(
+                        code::PORT_TYPE,
+                        format!("{role} `{}` of `{}` has another type", port.name, p.name),
+                    )
+                    .at(port.span, format!("{} is wanted", port.ty))
+                    .at(c.at, format!("{have} is what it gives"))
+                    .hint(format!(
+                        "declare `{role} {}: {have}` in the agent, or choose a platform that fits",
+                        port.name
+                    )),
                 );
             }
         }

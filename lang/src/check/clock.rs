@@ -26,8 +26,14 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     for r in &g.robots {
         let Some(p) = g.platforms.get(r.platform as usize) else { continue };
         for s in p.of_role("sensor") {
-            let by_step = s.args.iter().any(|(n, e)| &**n == "period" && matches!(e.ty, Type::Option(_)) && !matches!(e.op, Op::MakeSome));
-            let consumed = r.agents.iter().filter_map(|b| g.agents.get(b.agent as usize)).any(|a| a.sensors.iter().any(|q| q.name == s.name));
+            let by_step = s.args.iter().any(|(n, e)| {
+                &**n == "period" && matches!(e.ty, Type::Option(_)) && !matches!(e.op, Op::MakeSome)
+            });
+            let consumed = r
+                .agents
+                .iter()
+                .filter_map(|b| g.agents.get(b.agent as usize))
+                .any(|a| a.sensors.iter().any(|q| q.name == s.name));
             if by_step && consumed {
                 found.push((r.at, format!("sensor `{}` of `{}` is read once a step", s.name, p.name)));
             }
@@ -42,8 +48,11 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             found.push((w.span, "a number of steps".into()));
         }
     }
-    found
-        .into_iter()
-        .map(|(at, why)| Diagnostic::error(code::NO_STEP_CLOCK, "this needs a step clock").at(at, why).hint("add `clock step 1 s` to the mission"))
-        .collect()
+    // One clock is missing, however many things wait for it.
+    found.sort();
+    found.dedup();
+    let Some(((at, why), more)) = found.split_first() else { return Vec::new() };
+    let d = Diagnostic::error(code::NO_STEP_CLOCK, "this needs a step clock").at(*at, why.clone());
+    let d = more.iter().take(3).fold(d, |d, (at, why)| d.at(*at, why.clone()));
+    vec![d.hint("add `clock step 1 s` to the mission")]
 }

@@ -39,7 +39,11 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     }
     for r in &g.robots {
         let scene = [Some(&r.start), r.scatter.as_ref(), r.target.as_ref()];
-        scene.into_iter().flatten().chain(r.agents.iter().flat_map(|b| &b.arguments)).for_each(|e| look(e, Kind::Scene, &mut out));
+        scene
+            .into_iter()
+            .flatten()
+            .chain(r.agents.iter().flat_map(|b| &b.arguments))
+            .for_each(|e| look(e, Kind::Scene, &mut out));
     }
     out
 }
@@ -50,19 +54,30 @@ fn look(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
 
 fn one(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
     match &e.op {
-        Op::Truth(_) | Op::Run(_) | Op::Believed(..) | Op::Achieved(_) | Op::Quantified(_) | Op::OfRobot(_) => out.push(
+        Op::Truth(_)
+        | Op::Run(_)
+        | Op::Believed(..)
+        | Op::Achieved(_)
+        | Op::Quantified(_)
+        | Op::OfRobot(_) => out.push(
             Diagnostic::error(code::TRUTH, "a behaviour cannot know the world's truth")
                 .at(e.span, "truth is for `done`, `expect` and `metric`")
                 .hint("read a sensor the platform declares, or let others publish what they know on a topic"),
         ),
         Op::Builtin(Function::Draw) if matches!(kind, Kind::Start | Kind::Belief) => out.push(
-            Diagnostic::error(code::RANDOM, "nothing can be drawn here").at(e.span, "would differ from evaluation to evaluation").hint("draws belong to worlds, robots and behaviours"),
+            Diagnostic::error(code::RANDOM, "nothing can be drawn here")
+                .at(e.span, "would differ from evaluation to evaluation")
+                .hint("draws belong to worlds, robots and behaviours"),
         ),
         Op::Reading(_) | Op::Heard(_) if kind != Kind::Behaviour => out.push(
-            Diagnostic::error(code::BELIEF, "there is nothing to read here").at(e.span, "no robot is running yet, or none is meant").hint("keep what matters in a `state` and name that"),
+            Diagnostic::error(code::BELIEF, "there is nothing to read here")
+                .at(e.span, "no robot is running yet, or none is meant")
+                .hint("keep what matters in a `state` and name that"),
         ),
         Op::State(_) if matches!(kind, Kind::Start | Kind::Scene) => out.push(
-            Diagnostic::error(code::BELIEF, "a state has no value yet").at(e.span, "before the run").hint("use a constant or a parameter"),
+            Diagnostic::error(code::BELIEF, "a state has no value yet")
+                .at(e.span, "before the run")
+                .hint("use a constant or a parameter"),
         ),
         _ => {}
     }

@@ -2,12 +2,16 @@
 //! graphs from sources and from graph files alike.
 
 mod arbitration;
+mod bounds;
 mod capability;
 mod clock;
+mod constants;
+mod effects;
 mod events;
 mod goals;
 mod knowledge;
 mod placement;
+mod ranges;
 mod reachability;
 mod timing;
 mod topics;
@@ -32,7 +36,15 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(topics::check(graph));
     out.extend(events::check(graph));
     out.extend(timing::check(graph));
-    out.extend(placement::check(graph));
+    out.extend(effects::check(graph));
+    out.extend(bounds::check(graph));
+    let ranges = ranges::check(graph);
+    // Where things stand means nothing while their sizes are impossible.
+    let possible = ranges.is_empty();
+    out.extend(ranges);
+    if possible {
+        out.extend(placement::check(graph));
+    }
     out
 }
 

@@ -47,26 +47,39 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         let name = &t.channel.name;
         match (published, read) {
             (Some(at), None) => out.push(
-                Diagnostic::error(code::UNREAD_TOPIC, format!("nobody reads topic `{name}`")).at(*at, "published here").hint(format!("read it with `heard({name})` or a unit `on {name}(m)`, or do not publish it")),
+                Diagnostic::error(code::UNREAD_TOPIC, format!("nobody reads topic `{name}`"))
+                    .at(*at, "published here")
+                    .hint(format!(
+                        "read it with `heard({name})` or a unit `on {name}(m)`, or do not publish it"
+                    )),
             ),
             (None, Some(at)) => out.push(
-                Diagnostic::error(code::UNPUBLISHED_TOPIC, format!("nobody publishes on topic `{name}`")).at(*at, "waited for here").hint(format!("add `publish {name} …` to the agent that knows it")),
+                Diagnostic::error(code::UNPUBLISHED_TOPIC, format!("nobody publishes on topic `{name}`"))
+                    .at(*at, "waited for here")
+                    .hint(format!("add `publish {name} …` to the agent that knows it")),
             ),
             _ => {}
         }
     }
     for (to, performative, content, at) in &told {
         let Some(a) = agents.iter().find(|a| a.name == *to) else {
-            out.push(Diagnostic::error(code::UNREAD_TOPIC, format!("no robot runs `{to}`")).at(*at, "told here").hint("let the robot run it too"));
+            out.push(
+                Diagnostic::error(code::UNREAD_TOPIC, format!("no robot runs `{to}`"))
+                    .at(*at, "told here")
+                    .hint("let the robot run it too"),
+            );
             continue;
         };
         let heard = a.units.iter().any(|u| matches!(&u.trigger, Trigger::Told { performative: p, content: c, .. } if p == performative && c == content));
         if !heard {
             out.push(
-                Diagnostic::error(code::UNREAD_TOPIC, format!("`{to}` does not listen to {performative} {content}"))
-                    .at(*at, "told here")
-                    .at(a.span, "has no unit for it")
-                    .hint(format!("add a unit `on {performative} {content}(m)` to it")),
+                Diagnostic::error(
+                    code::UNREAD_TOPIC,
+                    format!("`{to}` does not listen to {performative} {content}"),
+                )
+                .at(*at, "told here")
+                .at(a.span, "has no unit for it")
+                .hint(format!("add a unit `on {performative} {content}(m)` to it")),
             );
         }
     }
@@ -77,9 +90,15 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             if !sent {
                 let by = from.as_ref().map_or_else(|| "anybody".to_string(), |f| format!("`{f}`"));
                 out.push(
-                    Diagnostic::error(code::UNPUBLISHED_TOPIC, format!("nobody tells `{}` {performative} {content}", a.name))
-                        .at(u.span, format!("waits for it from {by}"))
-                        .hint(format!("add `tell {} {performative} {content}(…)` to the agent that knows it", a.name)),
+                    Diagnostic::error(
+                        code::UNPUBLISHED_TOPIC,
+                        format!("nobody tells `{}` {performative} {content}", a.name),
+                    )
+                    .at(u.span, format!("waits for it from {by}"))
+                    .hint(format!(
+                        "add `tell {} {performative} {content}(…)` to the agent that knows it",
+                        a.name
+                    )),
                 );
             }
         }

@@ -4,8 +4,8 @@
 use super::walk;
 use crate::code;
 use soifra_graph::{
-    Agent, Diagnostic, Dim, ExpectKind, Expr, Frame, Graph, ListOp, Op, Own, Quantifier, Run, Span, Stmt, StmtKind, Strategy, Trigger, Truth, Type,
-    UnitKind, Value, pattern::Bindings, typing,
+    Agent, Diagnostic, Dim, ExpectKind, Expr, Frame, Graph, ListOp, Op, Own, Quantifier, Run, Span, Stmt,
+    StmtKind, Strategy, Trigger, Truth, Type, UnitKind, Value, pattern::Bindings, typing,
 };
 
 /// Checks everything the other checks take for granted.
@@ -40,18 +40,29 @@ impl<'a> Types<'a> {
             }
         }
         for f in &g.functions {
-            if f.parameters.len() > f.locals.len() || f.parameters.iter().zip(&f.locals).any(|((_, t), l)| t != l) {
+            if f.parameters.len() > f.locals.len()
+                || f.parameters.iter().zip(&f.locals).any(|((_, t), l)| t != l)
+            {
                 self.bad(f.span, format!("function `{}` has other locals than parameters", f.name));
                 continue;
             }
             self.locals = f.locals.clone();
             self.expr(&f.body);
         }
-        let parts = g.world.iter().chain(g.platforms.iter().flat_map(|p| &p.components)).chain(g.topics.iter().map(|t| &t.channel));
+        let parts = g
+            .world
+            .iter()
+            .chain(g.platforms.iter().flat_map(|p| &p.components))
+            .chain(g.topics.iter().map(|t| &t.channel));
         for c in parts {
             for (name, e) in &c.args {
                 let known = soifra_graph::component::model(&c.role, &c.model);
-                if !known.is_some_and(|m| m.signature.parameters.iter().any(|p| p.name == *name && p.pattern.matches(&e.ty, &mut Bindings::default()))) {
+                if !known.is_some_and(|m| {
+                    m.signature
+                        .parameters
+                        .iter()
+                        .any(|p| p.name == *name && p.pattern.matches(&e.ty, &mut Bindings::default()))
+                }) {
                     self.bad(c.at, format!("`{name}` is no argument of {} {}", c.role, c.model));
                 }
                 self.lone(e, &[Type::Int]);
@@ -143,11 +154,15 @@ impl<'a> Types<'a> {
         for u in &a.units {
             self.locals = u.locals.clone();
             match &u.trigger {
-                Trigger::Message { topic, local } => match (self.g.topics.get(*topic as usize), u.locals.get(*local as usize)) {
-                    (Some(t), Some(l)) if t.ty == *l => {}
-                    _ => self.bad(u.span, "a message of another type"),
-                },
-                Trigger::Told { content, local, .. } if u.locals.get(*local as usize) != Some(&Type::Record(content.clone())) => {
+                Trigger::Message { topic, local } => {
+                    match (self.g.topics.get(*topic as usize), u.locals.get(*local as usize)) {
+                        (Some(t), Some(l)) if t.ty == *l => {}
+                        _ => self.bad(u.span, "a message of another type"),
+                    }
+                }
+                Trigger::Told { content, local, .. }
+                    if u.locals.get(*local as usize) != Some(&Type::Record(content.clone())) =>
+                {
                     self.bad(u.span, "a message of another type");
                 }
                 Trigger::Reading(p) if *p as usize >= a.sensors.len() => self.bad(u.span, "no such sensor"),
@@ -158,7 +173,10 @@ impl<'a> Types<'a> {
                 self.machine(a, states);
             }
             if let UnitKind::Plan { nodes, .. } = &u.kind {
-                let tree = nodes.iter().enumerate().all(|(i, n)| n.children.iter().all(|c| (*c as usize) < nodes.len() && *c as usize > i));
+                let tree = nodes
+                    .iter()
+                    .enumerate()
+                    .all(|(i, n)| n.children.iter().all(|c| (*c as usize) < nodes.len() && *c as usize > i));
                 let children: usize = nodes.iter().map(|n| n.children.len()).sum();
                 if nodes.is_empty() || !tree || children + 1 != nodes.len() {
                     self.bad(u.span, "a plan is a tree, parents before children");
@@ -180,10 +198,14 @@ impl<'a> Types<'a> {
             let fits = match &x.strategy {
                 Strategy::Priority(list) => list.len() == n && list.iter().all(|e| e.ty == Type::Int),
                 Strategy::Blend(list) => list.len() == n && list.iter().all(|e| e.ty.fits(&Type::NUMBER)),
-                Strategy::Layers(list) => list.len() == n && list.iter().all(|l| l.suppresses.iter().all(|s| (*s as usize) < n)),
+                Strategy::Layers(list) => {
+                    list.len() == n && list.iter().all(|l| l.suppresses.iter().all(|s| (*s as usize) < n))
+                }
                 Strategy::Switch => true,
             };
-            let known = x.sources.iter().all(|s| self.g.agents.get(s.agent as usize).is_some_and(|a| (s.unit as usize) < a.units.len()));
+            let known = x.sources.iter().all(|s| {
+                self.g.agents.get(s.agent as usize).is_some_and(|a| (s.unit as usize) < a.units.len())
+            });
             if !fits || !known || x.actuator as usize >= a.actuators.len() {
                 self.bad(x.at, "an arbiter that does not fit its sources");
             }
@@ -197,7 +219,12 @@ impl<'a> Types<'a> {
             }
             for t in &s.transitions {
                 let fits = states.get(t.target as usize).is_some_and(|to| {
-                    to.data.len() == t.arguments.len() && to.data.iter().zip(&t.arguments).all(|(d, e)| a.states.get(*d as usize).is_some_and(|s| s.ty == e.ty))
+                    to.data.len() == t.arguments.len()
+                        && to
+                            .data
+                            .iter()
+                            .zip(&t.arguments)
+                            .all(|(d, e)| a.states.get(*d as usize).is_some_and(|s| s.ty == e.ty))
                 });
                 if !fits {
                     self.bad(t.at, "a transition does not fit the data of its target");
@@ -262,7 +289,9 @@ impl<'a> Types<'a> {
                 None => false,
             },
             Op::Param(i) => is(self.g.params.get(*i as usize).map(|p| &p.ty)),
-            Op::Heard(i) => matches!(&e.ty, Type::List(t, _) if self.g.topics.get(*i as usize).is_some_and(|topic| topic.ty == **t)),
+            Op::Heard(i) => {
+                matches!(&e.ty, Type::List(t, _) if self.g.topics.get(*i as usize).is_some_and(|topic| topic.ty == **t))
+            }
             Op::Now | Op::Elapsed => quantity(Dim::TIME),
             Op::StepCount => quantity(Dim::STEP),
             Op::Own(Own::Index) => e.ty == Type::Int,
@@ -273,7 +302,9 @@ impl<'a> Types<'a> {
             Op::Truth(Truth::PathLength) => quantity(Dim::LENGTH),
             Op::Truth(Truth::Collisions) | Op::Run(Run::Collisions) => e.ty == Type::Int,
             Op::Truth(Truth::InCollision) | Op::Run(Run::InCollision) => e.ty == Type::Bool,
-            Op::Believed(a, s) => is(self.g.agents.get(*a as usize).and_then(|a| a.states.get(*s as usize)).map(|s| &s.ty)),
+            Op::Believed(a, s) => {
+                is(self.g.agents.get(*a as usize).and_then(|a| a.states.get(*s as usize)).map(|s| &s.ty))
+            }
             Op::Achieved(i) => e.ty == Type::Bool && (*i as usize) < self.g.goals.len(),
             Op::Quantified(q) => match q {
                 Quantifier::Each | Quantifier::Some => e.ty == Type::Bool && body(0),
@@ -282,40 +313,68 @@ impl<'a> Types<'a> {
             },
             Op::OfRobot(i) => (*i as usize) < self.g.robots.len() && body(0),
             Op::Call(i) => self.g.functions.get(*i as usize).is_some_and(|f| {
-                f.body.ty == e.ty && f.parameters.len() == args.len() && f.parameters.iter().zip(&args).all(|((_, t), a)| t == *a)
+                f.body.ty == e.ty
+                    && f.parameters.len() == args.len()
+                    && f.parameters.iter().zip(&args).all(|((_, t), a)| t == *a)
             }),
             Op::Builtin(f) => {
                 let (s, mut b) = (f.signature(), Bindings::default());
-                s.parameters.len() == args.len() && s.parameters.iter().zip(&args).all(|(p, t)| p.pattern.matches(t, &mut b)) && s.result.instantiate(&b).is_some_and(|t| t == e.ty)
+                s.parameters.len() == args.len()
+                    && s.parameters.iter().zip(&args).all(|(p, t)| p.pattern.matches(t, &mut b))
+                    && s.result.instantiate(&b).is_some_and(|t| t == e.ty)
             }
             Op::Sqrt => args.first().and_then(|t| typing::sqrt(t)).is_some_and(|t| t == e.ty),
             Op::Dot => args.len() == 2 && typing::dot(args[0], args[1]).is_some_and(|t| t == e.ty),
-            Op::Binary(op) => args.len() == 2 && typing::binary(*op, args[0], args[1]).is_some_and(|t| t == e.ty || t.fits(&e.ty)),
+            Op::Binary(op) => {
+                args.len() == 2
+                    && typing::binary(*op, args[0], args[1]).is_some_and(|t| t == e.ty || t.fits(&e.ty))
+            }
             Op::Power(n) => args.first().and_then(|t| typing::power(t, *n)).is_some_and(|t| t.fits(&e.ty)),
             Op::Neg => args.first().and_then(|t| typing::negate(t)).is_some_and(|t| t.fits(&e.ty)),
             Op::Not => args == [&Type::Bool] && e.ty == Type::Bool,
             Op::If => args.len() == 3 && *args[0] == Type::Bool && body(1) && body(2),
             Op::Let(l) => args.len() == 2 && self.locals.get(*l as usize) == Some(args[0]) && body(1),
             Op::IfSome { local, .. } => {
-                args.len() == 3 && matches!(args[0], Type::Option(t) if self.locals.get(*local as usize) == Some(t)) && body(1) && body(2)
+                args.len() == 3
+                    && matches!(args[0], Type::Option(t) if self.locals.get(*local as usize) == Some(t))
+                    && body(1)
+                    && body(2)
             }
             Op::Switch { variants, rest } => {
                 let known = matches!(args.first(), Some(Type::Enum(n)) if self.g.types.enums.get(n).is_some_and(|d| variants.iter().all(|v| (*v as usize) < d.variants.len())));
                 known && args.len() == 1 + variants.len() + usize::from(*rest) && (1..args.len()).all(body)
             }
-            Op::MakeRecord => matches!(&e.ty, Type::Record(n) if self.g.types.records.get(n).is_some_and(|r| r.fields.len() == args.len() && r.fields.iter().zip(&args).all(|((_, t), a)| t == *a))),
-            Op::Field(i) => matches!(args.first(), Some(Type::Record(n)) if is(self.g.types.records.get(n).and_then(|r| r.fields.get(*i as usize)).map(|(_, t)| t))),
-            Op::MakeList => matches!(&e.ty, Type::List(t, n) if args.len() <= *n as usize && args.iter().all(|a| **a == **t)),
-            Op::MakeVector => args.len() == 3 && match &e.ty {
-                Type::Point(_) => args.iter().all(|a| typing::number(a) == Some(Dim::LENGTH)),
-                Type::Vector(_, d) => args.iter().all(|a| typing::number(a) == Some(*d)),
-                _ => false,
-            },
-            Op::MakeRange => matches!(&e.ty, Type::Range(d) if args.len() == 2 && args.iter().all(|a| typing::number(a) == Some(*d))),
-            Op::MakeMatrix => matches!(&e.ty, Type::Matrix(r, c) if args.len() == usize::from(*r) * usize::from(*c) && args.iter().all(|a| **a == Type::NUMBER)),
+            Op::MakeRecord => {
+                matches!(&e.ty, Type::Record(n) if self.g.types.records.get(n).is_some_and(|r| r.fields.len() == args.len() && r.fields.iter().zip(&args).all(|((_, t), a)| t == *a)))
+            }
+            Op::Field(i) => {
+                matches!(args.first(), Some(Type::Record(n)) if is(self.g.types.records.get(n).and_then(|r| r.fields.get(*i as usize)).map(|(_, t)| t)))
+            }
+            Op::MakeList => {
+                matches!(&e.ty, Type::List(t, n) if args.len() <= *n as usize && args.iter().all(|a| **a == **t))
+            }
+            Op::MakeVector => {
+                args.len() == 3
+                    && match &e.ty {
+                        Type::Point(_) => args.iter().all(|a| typing::number(a) == Some(Dim::LENGTH)),
+                        Type::Vector(_, d) => args.iter().all(|a| typing::number(a) == Some(*d)),
+                        _ => false,
+                    }
+            }
+            Op::MakeRange => {
+                matches!(&e.ty, Type::Range(d) if args.len() == 2 && args.iter().all(|a| typing::number(a) == Some(*d)))
+            }
+            Op::MakeMatrix => {
+                matches!(&e.ty, Type::Matrix(r, c) if args.len() == usize::from(*r) * usize::from(*c) && args.iter().all(|a| **a == Type::NUMBER))
+            }
             Op::MakeSome => matches!(&e.ty, Type::Option(t) if args == [&**t]),
             Op::MakeNone(_) => matches!(e.ty, Type::Option(_)),
-            Op::Part(p) => args.first().is_some_and(|t| typing::parts_of(t).iter().filter_map(|n| typing::part(t, n)).any(|(q, ty)| q == *p && ty == e.ty)),
+            Op::Part(p) => args.first().is_some_and(|t| {
+                typing::parts_of(t)
+                    .iter()
+                    .filter_map(|n| typing::part(t, n))
+                    .any(|(q, ty)| q == *p && ty == e.ty)
+            }),
             Op::List(op, l) => self.list(*op, *l, &args, &e.ty),
             Op::Fold(a, l) => {
                 args.len() == 3
@@ -324,9 +383,15 @@ impl<'a> Types<'a> {
                     && body(1)
                     && body(2)
             }
-            Op::Transpose => matches!((args.first(), &e.ty), (Some(Type::Matrix(r, c)), Type::Matrix(x, y)) if r == y && c == x),
-            Op::Inverse => args.first().is_some_and(|t| matches!(t, Type::Matrix(r, c) if r == c) && e.ty == (*t).clone().optional()),
-            Op::Item(r, c) => matches!(args.first(), Some(Type::Matrix(x, y)) if r < x && c < y) && e.ty == Type::NUMBER,
+            Op::Transpose => {
+                matches!((args.first(), &e.ty), (Some(Type::Matrix(r, c)), Type::Matrix(x, y)) if r == y && c == x)
+            }
+            Op::Inverse => args.first().is_some_and(|t| {
+                matches!(t, Type::Matrix(r, c) if r == c) && e.ty == (*t).clone().optional()
+            }),
+            Op::Item(r, c) => {
+                matches!(args.first(), Some(Type::Matrix(x, y)) if r < x && c < y) && e.ty == Type::NUMBER
+            }
         }
     }
 
@@ -341,7 +406,9 @@ impl<'a> Types<'a> {
             ListOp::Any | ListOp::All => **body == Type::Bool && *ty == Type::Bool,
             ListOp::Count => **body == Type::Bool && *ty == Type::Int,
             ListOp::Find => **body == Type::Bool && *ty == Type::Option(item.clone()),
-            ListOp::MinBy | ListOp::MaxBy => typing::number(body).is_some() && *ty == Type::Option(item.clone()),
+            ListOp::MinBy | ListOp::MaxBy => {
+                typing::number(body).is_some() && *ty == Type::Option(item.clone())
+            }
         }
     }
 }
@@ -361,8 +428,12 @@ fn is_a(v: &Value, t: &Type, g: &Graph) -> bool {
         (Value::Variant(n), Type::Enum(e)) => g.types.enums.get(e).is_some_and(|e| e.variants.contains(n)),
         (Value::None(_), Type::Option(_)) => true,
         (Value::Some(v), Type::Option(t)) => is_a(v, t, g),
-        (Value::List(items), Type::List(t, n)) => items.len() <= *n as usize && items.iter().all(|v| is_a(v, t, g)),
-        (Value::Record(items), Type::Record(n)) => g.types.records.get(n).is_some_and(|r| r.fields.len() == items.len() && items.iter().zip(&r.fields).all(|(v, (_, t))| is_a(v, t, g))),
+        (Value::List(items), Type::List(t, n)) => {
+            items.len() <= *n as usize && items.iter().all(|v| is_a(v, t, g))
+        }
+        (Value::Record(items), Type::Record(n)) => g.types.records.get(n).is_some_and(|r| {
+            r.fields.len() == items.len() && items.iter().zip(&r.fields).all(|(v, (_, t))| is_a(v, t, g))
+        }),
         (Value::Vector(v), Type::Point(_) | Type::Vector(..)) => v.iter().all(|x| x.is_finite()),
         (Value::Pose(v), Type::Pose(_)) => v.iter().all(|x| x.is_finite()),
         (Value::Twist(v), Type::Twist) => v.iter().all(|x| x.is_finite()),

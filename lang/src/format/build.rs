@@ -23,6 +23,8 @@ pub enum Gap {
     Soft,
     /// A space, or a line break when its group is broken and what follows, up to that operation, is too long.
     Fill(usize),
+    /// Nothing, or a line break when the value that ends right before went to a line of its own.
+    AfterValue,
     /// A line break; a blank line where there was one.
     Hard,
     /// A blank line.

@@ -62,7 +62,7 @@ impl Builder<'_, '_> {
             | Rule::weighted
             | Rule::plan_check
             | Rule::plan_wait_until => self.valued(node),
-            Rule::match_arm | Rule::lambda => self.valued(node),
+            Rule::match_arm => self.valued(node),
             rule => self.behaviour(rule, node),
         }
     }
@@ -246,8 +246,9 @@ impl Builder<'_, '_> {
         }
         let parts: Vec<_> = children(node.clone()).filter(|c| is_part(c.as_rule())).collect();
         let fill = parts.len() > 1 && parts.iter().all(super::values::is_literal);
-        // A bracket right inside another shares its indentation.
-        let alone = parts.len() == 1 && parts.iter().all(super::values::is_bracket);
+        // A bracket right inside another shares its indentation, and so does what a function argument gives.
+        let lambda = parts.len() == 1 && parts.iter().all(super::values::is_lambda);
+        let alone = lambda || parts.len() == 1 && parts.iter().all(super::values::is_bracket);
         let (mut inside, mut last) = (false, None);
         self.parts(node, |b, p| match p {
             Part::Own("(" | "[") if !inside => {
@@ -263,7 +264,11 @@ impl Builder<'_, '_> {
                 if !alone {
                     b.dedent();
                 }
-                b.gap(if alone || (parts.is_empty() && !b.comment_next()) { Gap::Tight } else { Gap::Soft });
+                b.gap(match () {
+                    () if lambda => Gap::AfterValue,
+                    () if alone || (parts.is_empty() && !b.comment_next()) => Gap::Tight,
+                    () => Gap::Soft,
+                });
                 b.token();
                 b.close();
             }

@@ -43,7 +43,7 @@ impl Measure {
         let mut reach = vec![0; ops.len() + 1];
         for (i, op) in ops.iter().enumerate().rev() {
             let may_break = match op {
-                Op::Gap { gap, .. } => !matches!(gap, Gap::Tight | Gap::Space),
+                Op::Gap { gap, .. } => !matches!(gap, Gap::Tight | Gap::Space | Gap::AfterValue),
                 Op::Value { .. } => true,
                 _ => false,
             };

@@ -13,7 +13,8 @@
 //!   node. Enumerations stay on one line when they fit. All other blocks are broken.
 //! - A list in brackets that does not fit has one part a line; a list of plain numbers is filled.
 //! - A value that does not fit beside its `=`, `=>` or keyword moves to the next line, indented; but a list,
-//!   a `match`, or a call whose arguments all have names stays and is broken inside its brackets.
+//!   a `match`, or a call whose arguments all have names stays and is broken inside its brackets, and calls
+//!   on each other stay and go one a line, each before its `.`.
 //! - Operators break before, loosest first. A guard's own continuation lines are indented twice, so that
 //!   they stand apart from what it guards.
 //! - A comment on its own line stays so, at the indentation of what follows; one that ends a line stays

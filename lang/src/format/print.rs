@@ -9,7 +9,17 @@ use super::{STEP, WIDTH};
 pub fn print(source: &Source<'_>, ops: &[Op]) -> String {
     let measure = Measure::new(source, ops);
     let out = String::with_capacity(source.tokens.len() * 8);
-    let mut p = Printer { source, measure, out, column: 0, levels: vec![0], broken: vec![true], next: 0 };
+    let mut p = Printer {
+        source,
+        measure,
+        out,
+        column: 0,
+        levels: vec![0],
+        broken: vec![true],
+        values: Vec::new(),
+        value_broke: false,
+        next: 0,
+    };
     for (i, op) in ops.iter().enumerate() {
         p.op(i, *op);
     }
@@ -25,6 +35,10 @@ struct Printer<'s, 't> {
     levels: Vec<usize>,
     /// Whether the open groups are broken, innermost last.
     broken: Vec<bool>,
+    /// Whether the open values went to lines of their own, innermost last.
+    values: Vec<bool>,
+    /// Whether the value that ended last did.
+    value_broke: bool,
     /// Token to come.
     next: usize,
 }
@@ -43,6 +57,7 @@ impl Printer<'_, '_> {
                     Gap::Hard | Gap::Blank => true,
                     Gap::Line | Gap::Soft => broken,
                     Gap::Fill(end) => broken && !self.fits(i, end, self.column),
+                    Gap::AfterValue => self.value_broke,
                     Gap::Tight | Gap::Space => false,
                 };
                 self.gap(gap, token, breaks);
@@ -63,9 +78,14 @@ impl Printer<'_, '_> {
                         Hug::Always => !here,
                     };
                 self.levels.push(if breaks { level + 1 } else { level });
+                self.values.push(breaks);
                 self.gap(Gap::Line, token, breaks);
             }
-            Op::EndValue | Op::Dedent => {
+            Op::EndValue => {
+                self.value_broke = self.values.pop().unwrap_or(false);
+                self.levels.pop();
+            }
+            Op::Dedent => {
                 self.levels.pop();
             }
             Op::Indent(n) => self.levels.push(level + n),
@@ -111,7 +131,7 @@ impl Printer<'_, '_> {
                     if pending {
                         self.line(level, members && !first && (blank || c.breaks > 1));
                         (blank, first, pending) = (false, false, false);
-                    } else if inline || !opened || !matches!(gap, Gap::Tight | Gap::Soft) {
+                    } else if inline || !opened || !matches!(gap, Gap::Tight | Gap::Soft | Gap::AfterValue) {
                         self.write(" ");
                     }
                     inline = true;

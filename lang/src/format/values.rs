@@ -16,7 +16,8 @@ impl Builder<'_, '_> {
     pub fn expression(&mut self, rule: Rule, node: Node<'_>) {
         match rule {
             Rule::expr => self.expr(node, 1),
-            Rule::operand => self.operand(node),
+            Rule::operand => self.operand(node, 1),
+            Rule::lambda => self.lambda(node),
             Rule::if_expr => self.if_expr(node),
             Rule::arg => self.arg(node),
             Rule::some_expr | Rule::is_test | Rule::pattern | Rule::on_told | Rule::on_topic => {
@@ -60,7 +61,7 @@ impl Builder<'_, '_> {
     fn chain(&mut self, links: &[Link<'_>], levels: usize) {
         let Some(loosest) = links.iter().skip(1).map(|l| l.power).min() else {
             for link in links {
-                self.node(link.operand.clone());
+                self.operand(link.operand.clone(), levels.max(1));
                 for test in &link.tests {
                     self.node(test.clone());
                 }
@@ -90,27 +91,24 @@ impl Builder<'_, '_> {
         self.close();
     }
 
-    /// Signs, a primary, and what is called on it; several calls on each other go one a line.
-    fn operand(&mut self, node: Node<'_>) {
-        let calls = method_calls(&node);
-        if calls < 2 {
+    /// Signs, a primary, and what is called on it; several calls on each other go one a line, indented by
+    /// `levels`.
+    fn operand(&mut self, node: Node<'_>, levels: usize) {
+        if method_calls(&node) < 2 {
             self.parts(node, |b, p| b.sign_or_plain(p));
             return;
         }
-        let called: Vec<bool> = {
-            let posts: Vec<_> = children(node.clone()).filter(|c| c.as_rule() == Rule::postfix).collect();
-            posts
-                .iter()
-                .enumerate()
-                .map(|(i, p)| is_field(p) && posts.get(i + 1).is_some_and(is_call))
-                .collect()
-        };
-        let mut post = 0;
+        let posts: Vec<_> = children(node.clone()).filter(|c| c.as_rule() == Rule::postfix).collect();
+        let called = |i: usize| is_field(&posts[i]) && posts.get(i + 1).is_some_and(is_call);
+        let (mut post, mut indented) = (0, false);
         self.open();
-        self.indent(1);
         self.parts(node, |b, p| match p {
             Part::Child(c) if c.as_rule() == Rule::postfix => {
-                if called[post] {
+                if called(post) {
+                    if !indented {
+                        b.indent(levels);
+                        indented = true;
+                    }
                     b.gap(Gap::Soft);
                 }
                 post += 1;
@@ -120,6 +118,19 @@ impl Builder<'_, '_> {
         });
         self.dedent();
         self.close();
+    }
+
+    /// A function argument. What it gives may move to the next line; calls on each other do so together.
+    fn lambda(&mut self, node: Node<'_>) {
+        self.parts(node, |b, p| match p {
+            Part::Child(c) if c.as_rule() == Rule::expr => {
+                let hug = if is_call_chain(&c) { Hug::Never } else { hug(&c) };
+                b.open_value(hug);
+                b.expr(c, 0);
+                b.close_value();
+            }
+            p => b.plain(p),
+        });
     }
 
     fn sign_or_plain(&mut self, part: Part<'_, '_>) {
@@ -132,35 +143,39 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// Breaks before each `else`; before `then` only where its line is still too long.
+    /// Breaks before each `else`; before `then` only where what follows then fits on the line.
     fn if_expr(&mut self, node: Node<'_>) {
-        let (mut clause, mut condition) = (false, false);
+        let exprs: Vec<_> = children(node.clone()).filter(|c| c.as_rule() == Rule::expr).collect();
+        let (mut seen, mut condition, mut value) = (0, false, false);
         self.open();
         self.parts(node, |b, p| match p {
             Part::Child(c) => match c.as_rule() {
                 Rule::K_IF => {
-                    b.open();
-                    (clause, condition) = (true, true);
+                    condition = true;
                     b.node(c);
                 }
                 Rule::K_THEN => {
-                    condition = false;
-                    b.indent(1);
-                    b.gap(Gap::Line);
+                    (condition, value) = (false, true);
+                    let hug = exprs.get(seen).map_or(Hug::Never, hug);
+                    b.open_value(if hug == Hug::Always { Hug::IfTooLong } else { hug });
                     b.node(c);
                 }
                 Rule::K_ELSE => {
                     b.gap(Gap::Line);
                     b.node(c);
                 }
-                Rule::expr if condition => b.guard(c),
-                Rule::expr if clause => {
-                    b.expr(c, 1);
-                    b.dedent();
-                    b.close();
-                    clause = false;
+                Rule::expr => {
+                    seen += 1;
+                    if condition {
+                        b.guard(c);
+                    } else if value {
+                        b.expr(c, 1);
+                        b.close_value();
+                        value = false;
+                    } else {
+                        b.value(c);
+                    }
                 }
-                Rule::expr => b.value(c),
                 _ => b.node(c),
             },
             p => b.plain(p),
@@ -184,7 +199,7 @@ pub fn hug(expr: &Node<'_>) -> Hug {
         return Hug::Never;
     };
     if method_calls(&operand) > 1 {
-        return Hug::Never;
+        return Hug::Always;
     }
     let Some(last) = children(operand).last() else { return Hug::Never };
     let Some(inner) = children(last).next() else { return Hug::Never };
@@ -200,6 +215,11 @@ pub fn hug(expr: &Node<'_>) -> Hug {
         Rule::some_expr => Hug::IfTooLong,
         _ => Hug::Never,
     }
+}
+
+/// Whether an expression is several calls on each other.
+fn is_call_chain(expr: &Node<'_>) -> bool {
+    only_child(expr.clone()).is_some_and(|o| method_calls(&o) > 1)
 }
 
 /// How many calls on a value an operand has, as `.first()`.
@@ -240,6 +260,11 @@ pub fn is_literal(expr: &Node<'_>) -> bool {
         Rule::tuple => children(p).all(|c| is_literal(&c)),
         _ => false,
     })
+}
+
+/// Whether an argument is a function without a name.
+pub fn is_lambda(arg: &Node<'_>) -> bool {
+    arg.as_rule() == Rule::arg && only_child(arg.clone()).is_some_and(|c| c.as_rule() == Rule::lambda)
 }
 
 /// Whether an expression is a list or `match`, or a point.

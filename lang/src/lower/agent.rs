@@ -26,8 +26,9 @@ impl<'a> Checker<'a> {
         self.agent = AgentScope { name: a.name.name.clone(), ..AgentScope::default() };
         self.agent_names(a);
         for (n, t) in &a.params {
-            if let Some(ty) = self.resolve_type(t, None) {
-                out.parameters.push((n.name.clone(), ty));
+            match self.resolve_type(t, None) {
+                Some(ty) => out.parameters.push((n.name.clone(), ty)),
+                None => self.poison(&n.name),
             }
         }
         self.agent.params = out.parameters.clone();
@@ -99,7 +100,10 @@ impl<'a> Checker<'a> {
         for m in &a.members {
             match m {
                 AgentMember::Sensor(n, t) => {
-                    let Some(ty) = self.resolve_type(t, None) else { continue };
+                    let Some(ty) = self.resolve_type(t, None) else {
+                        self.poison(&n.name);
+                        continue;
+                    };
                     let (ty, optional) = match ty {
                         Type::Option(inner) => (*inner, true),
                         ty => (ty, false),
@@ -108,7 +112,10 @@ impl<'a> Checker<'a> {
                     out.sensors.push(Port { name: n.name.clone(), ty, optional, span: n.span });
                 }
                 AgentMember::Actuator(n, t) => {
-                    let Some(ty) = self.resolve_type(t, None) else { continue };
+                    let Some(ty) = self.resolve_type(t, None) else {
+                        self.poison(&n.name);
+                        continue;
+                    };
                     self.agent.actuators.push((n.name.clone(), ty.clone()));
                     out.actuators.push(Port { name: n.name.clone(), ty, optional: false, span: n.span });
                 }
@@ -127,7 +134,10 @@ impl<'a> Checker<'a> {
             let want = match t {
                 Some(t) => match self.resolve_type(t, None) {
                     Some(ty) => Some(ty),
-                    None => continue,
+                    None => {
+                        self.poison(&n.name);
+                        continue;
+                    }
                 },
                 None => None,
             };
@@ -137,13 +147,12 @@ impl<'a> Checker<'a> {
             });
             let Some(initial) = value else {
                 // Keep the name, so that its uses do not become errors of their own.
-                if let Some(ty) = want {
-                    self.slot(
-                        &mut out.states,
-                        n.name.clone(),
-                        ty.clone(),
-                        Expr::constant(soifra_graph::Value::Bool(false), ty, n.span),
-                    );
+                match want {
+                    Some(ty) => {
+                        let none = Expr::constant(soifra_graph::Value::Bool(false), ty.clone(), n.span);
+                        self.slot(&mut out.states, n.name.clone(), ty, none);
+                    }
+                    None => self.poison(&n.name),
                 }
                 continue;
             };
@@ -173,8 +182,9 @@ impl<'a> Checker<'a> {
                     let before = self.errors.len();
                     self.in_body(Body::new(Place::Behaviour), |s| {
                         for (n, t) in &x.params {
-                            if let Some(ty) = s.resolve_type(t, None) {
-                                s.body.bind(n, &ty);
+                            match s.resolve_type(t, None) {
+                                Some(ty) => drop(s.body.bind(n, &ty)),
+                                None => s.poison(&n.name),
                             }
                         }
                         for c in x.until.iter().chain(&x.fails) {

@@ -47,6 +47,7 @@ pub fn lower(
         }
     };
     let failed = !c.errors.is_empty();
+    c.drop_consequences(program);
     errors.append(&mut c.errors);
     if failed { None } else { graph }
 }
@@ -74,7 +75,22 @@ impl<'a> Checker<'a> {
             body: Body::new(Place::Constant),
             expanding: Vec::new(),
             depth: 0,
+            poisoned: Default::default(),
+            written_out: 0,
+            too_much: false,
         }
+    }
+
+    /// Drops errors about names whose declaration is wrong itself, when that has been reported.
+    fn drop_consequences(&mut self, program: &Program) {
+        let poisoned = &self.poisoned;
+        self.errors.retain(|d| {
+            let by_name = matches!(
+                d.code,
+                code::UNKNOWN_NAME | code::UNKNOWN_FIELD | code::UNKNOWN_TYPE | code::ARGUMENTS
+            );
+            !(by_name && poisoned.contains(program.text(d.position())))
+        });
     }
 
     /// Enums, then records in an order that finds rings.
@@ -93,8 +109,9 @@ impl<'a> Checker<'a> {
             self.distinct(r.fields.iter().map(|(n, _)| n));
             let mut fields = Vec::new();
             for (n, t) in &r.fields {
-                if let Some(ty) = self.resolve_type(t, None) {
-                    fields.push((n.name.clone(), ty));
+                match self.resolve_type(t, None) {
+                    Some(ty) => fields.push((n.name.clone(), ty)),
+                    None => self.poison(&n.name),
                 }
             }
             self.types.records.insert(name.clone(), soifra_graph::Record { name: name.clone(), fields });
@@ -105,6 +122,7 @@ impl<'a> Checker<'a> {
                     .at(r.name.span, "its size would have no end")
                     .hint("take the field out that leads back");
                 self.report(d);
+                r.fields.iter().for_each(|(n, _)| self.poison(&n.name));
                 self.types
                     .records
                     .insert(name.clone(), soifra_graph::Record { name: name.clone(), fields: Vec::new() });
@@ -160,7 +178,10 @@ impl<'a> Checker<'a> {
             let ty = match &p.ty {
                 Some(t) => match self.resolve_type(t, Some(&p.name)) {
                     Some(ty) => Some(ty),
-                    None => continue,
+                    None => {
+                        self.poison(&p.name.name);
+                        continue;
+                    }
                 },
                 None => None,
             };
@@ -170,13 +191,17 @@ impl<'a> Checker<'a> {
             });
             let Some(value) = value else {
                 // The name stays known, so that its uses are not errors of their own.
-                if let Some(ty) = ty {
-                    self.params.push((p.name.name.clone(), ty, p.name.span));
+                match ty {
+                    Some(ty) => self.params.push((p.name.name.clone(), ty, p.name.span)),
+                    None => self.poison(&p.name.name),
                 }
                 continue;
             };
             let ty = value.ty.clone();
-            let Some(default) = self.fold_constant(&value, "a parameter's default") else { continue };
+            let Some(default) = self.fold_constant(&value, "a parameter's default") else {
+                self.params.push((p.name.name.clone(), ty, p.name.span));
+                continue;
+            };
             if let Some(ast::TypeRef { kind: ast::TypeKind::Service(i), .. }) = &p.ty {
                 self.services.insert(self.params.len() as u32, i.name.clone());
             }
@@ -198,43 +223,51 @@ impl<'a> Checker<'a> {
 
     fn topics(&mut self) {
         for t in self.decls.topics.clone() {
-            let Some(ty) = self.resolve_type(&t.ty, None) else { continue };
-            if !matches!(ty, Type::Record(_)) {
-                self.report(
-                    Diagnostic::error(code::MISMATCH, format!("messages are records, this is {ty}"))
-                        .at(t.ty.span, ty.to_string())
-                        .hint("declare a `record` with the fields of the message"),
-                );
-                continue;
+            let known = self.topics.len();
+            self.topic(t);
+            if self.topics.len() == known {
+                self.poison(&t.name.name);
             }
-            let channel: ast::Ident = ast::Ident { name: "channel".into(), span: t.name.span };
-            let (model, args): (&ast::Ident, &[ast::Arg]) = match &t.channel {
-                Some((m, a)) => (m, a),
-                None => (&channel, &[]),
-            };
-            let Some(channel) =
-                self.channel(&"topic".into(), t.name.name.clone(), None, model, args, t.name.span)
-            else {
-                continue;
-            };
-            let capacity = match channel.args.iter().find(|(n, _)| &**n == "capacity") {
-                Some((_, e)) => match self.fold_constant(e, "the capacity of a topic") {
-                    Some(Value::Int(n)) if (1..=1024).contains(&n) => n as u32,
-                    Some(_) => {
-                        self.report(
-                            Diagnostic::error(code::RANGE, "a capacity out of range")
-                                .at(e.span, "1 to 1024 are possible")
-                                .hint("how many senders are heard at most?"),
-                        );
-                        continue;
-                    }
-                    None => continue,
-                },
-                None => 16,
-            };
-            self.topics.push(Topic { ty, channel });
-            self.topic_capacity.push(capacity);
         }
+    }
+
+    fn topic(&mut self, t: &'a ast::Topic) {
+        let Some(ty) = self.resolve_type(&t.ty, None) else { return };
+        if !matches!(ty, Type::Record(_)) {
+            self.report(
+                Diagnostic::error(code::MISMATCH, format!("messages are records, this is {ty}"))
+                    .at(t.ty.span, ty.to_string())
+                    .hint("declare a `record` with the fields of the message"),
+            );
+            return;
+        }
+        let channel: ast::Ident = ast::Ident { name: "channel".into(), span: t.name.span };
+        let (model, args): (&ast::Ident, &[ast::Arg]) = match &t.channel {
+            Some((m, a)) => (m, a),
+            None => (&channel, &[]),
+        };
+        let Some(channel) =
+            self.channel(&"topic".into(), t.name.name.clone(), None, model, args, t.name.span)
+        else {
+            return;
+        };
+        let capacity = match channel.args.iter().find(|(n, _)| &**n == "capacity") {
+            Some((_, e)) => match self.fold_constant(e, "the capacity of a topic") {
+                Some(Value::Int(n)) if (1..=1024).contains(&n) => n as u32,
+                Some(_) => {
+                    self.report(
+                        Diagnostic::error(code::RANGE, "a capacity out of range")
+                            .at(e.span, "1 to 1024 are possible")
+                            .hint("how many senders are heard at most?"),
+                    );
+                    return;
+                }
+                None => return,
+            },
+            None => 16,
+        };
+        self.topics.push(Topic { ty, channel });
+        self.topic_capacity.push(capacity);
     }
 
     /// Everything in files without a mission: agents, profiles and worlds stand by themselves.
@@ -291,7 +324,11 @@ impl<'a> Checker<'a> {
         );
         for member in &m.members {
             if let M::Robot(r) = member {
-                if let Some(g) = self.robot(r, replaced.as_ref(), &index, &mut platforms) {
+                let Some(g) = self.robot(r, replaced.as_ref(), &index, &mut platforms) else {
+                    self.poison(&r.name.name);
+                    continue;
+                };
+                {
                     self.robots.push((
                         g.name.clone(),
                         g.count.is_some(),
@@ -406,7 +443,15 @@ impl<'a> Checker<'a> {
             }
         }
         self.distinct(entries.iter().filter_map(|e| e.name.as_ref()));
-        entries.into_iter().filter_map(|e| self.component(e, WORLD_ROLES)).collect()
+        let mut out = Vec::new();
+        for e in entries {
+            match (self.component(e, WORLD_ROLES), &e.name) {
+                (Some(c), _) => out.push(c),
+                (None, Some(n)) => self.poison(&n.name),
+                (None, None) => {}
+            }
+        }
+        out
     }
 
     fn goals(&mut self, m: &'a ast::Mission, agents: &BTreeMap<Name, u32>) -> Vec<Goal> {

@@ -206,13 +206,13 @@ impl Builder {
                     match *e.kind {
                         ExprKind::Name(name) => ExprKind::Call(Ident { name, span: e.span }, args),
                         ExprKind::Field(on, name) => ExprKind::Method(on, name, args),
-                        other => {
+                        _ => {
                             self.errors.push(
                                 Diagnostic::error(code::SYNTAX, "only a function can be called")
                                     .at(e.span, "this is a value")
                                     .hint("to multiply, write `*` between the value and the bracket"),
                             );
-                            other
+                            ExprKind::Bad
                         }
                     }
                 }

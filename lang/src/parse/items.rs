@@ -130,7 +130,7 @@ impl Builder {
                 TypeKind::Service(self.ident(&mut Cursor::new(p)))
             }
             Some(p) => {
-                let text: String = p.as_str().chars().filter(|c| !c.is_whitespace()).collect();
+                let text: String = type_text(p);
                 match parse_type(&text.replace(',', ", ")) {
                     Ok(t) => TypeKind::Named(t),
                     Err(why) => TypeKind::Bad(why),
@@ -275,4 +275,18 @@ impl Builder {
         }
         t
     }
+}
+
+/// A type as it is written, without blanks and comments.
+fn type_text(p: P<'_>) -> String {
+    let (mut out, from, text) = (String::new(), p.as_span().start(), p.as_str());
+    let mut at = 0;
+    for c in p.into_inner().flatten().filter(|p| p.as_rule() == Rule::COMMENT) {
+        let span = c.as_span();
+        out.push_str(&text[at..span.start() - from]);
+        at = span.end() - from;
+    }
+    out.push_str(&text[at..]);
+    out.retain(|c| !c.is_whitespace());
+    out
 }

@@ -299,6 +299,11 @@ impl Checker<'_> {
             Type::Option(_) if !matches!(pattern, Pattern::Option(_) | Pattern::Var(_)) => Diagnostic::error(code::ABSENCE, "this value may be absent")
                 .at(e.span, format!("{}, `{name}` of `{}`", e.ty, f.name))
                 .hint("give a value for absence with `or`, or take both ways with `match … { some(x) => … none(why) => … }`"),
+            t if frames(t).into_iter().any(|t| pattern.matches(&t, &mut bindings.clone())) => {
+                Diagnostic::error(code::FRAMES, format!("`{name}` of `{}` is in another frame", f.name))
+                    .at(e.span, e.ty.to_string())
+                    .hint(form.to_string())
+            }
             _ => Diagnostic::error(code::MISMATCH, format!("`{name}` of `{}` cannot be {}", f.name, e.ty)).at(e.span, e.ty.to_string()).hint(form.to_string()),
         };
         self.report(d);
@@ -404,12 +409,6 @@ impl Checker<'_> {
             ExprKind::Name(n) => n.clone(),
             _ => "?".into(),
         };
-        let Some(i) = self.goals.iter().position(|g| *g == name) else {
-            let names = self.goals.clone();
-            let d = unknown(code::UNKNOWN_NAME, "goal", &name, value.span, names.iter().map(|n| &**n));
-            self.report(d);
-            return None;
-        };
         if self.body.place != Place::Truth {
             self.report(
                 Diagnostic::error(code::BELIEF, "only the mission judges goals")
@@ -418,6 +417,12 @@ impl Checker<'_> {
             );
             return None;
         }
+        let Some(i) = self.goals.iter().position(|g| *g == name) else {
+            let names = self.goals.clone();
+            let d = unknown(code::UNKNOWN_NAME, "goal", &name, value.span, names.iter().map(|n| &**n));
+            self.report(d);
+            return None;
+        };
         Some(GExpr::new(Op::Achieved(i as u32), Vec::new(), Type::Bool, span))
     }
 
@@ -634,6 +639,21 @@ impl Checker<'_> {
                 .fold(choice, |body, (a, l)| GExpr::new(Op::Let(l), vec![a, body], ty.clone(), span)),
         )
     }
+}
+
+/// A type in every frame there is a name for; nothing for a type without a frame.
+fn frames(t: &Type) -> Vec<Type> {
+    let named = ["map", "odom", "base_link"].map(|f| soifra_graph::Frame(f.into()));
+    let make = |f: soifra_graph::Frame| {
+        Some(match t {
+            Type::Point(_) => Type::Point(f),
+            Type::Vector(_, d) => Type::Vector(f, *d),
+            Type::Heading(_) => Type::Heading(f),
+            Type::Pose(_) => Type::Pose(f),
+            _ => return None,
+        })
+    };
+    named.into_iter().filter_map(make).collect()
 }
 
 /// A type to guide a literal when part of the pattern is still open: quantities of an open dimension

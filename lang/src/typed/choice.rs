@@ -16,12 +16,17 @@ impl Checker<'_> {
     pub fn guard(&mut self, e: &Expr) -> Option<Vec<Conjunct>> {
         match &*e.kind {
             ExprKind::Binary(Binary::And, a, b) => {
-                let mut left = self.guard(a)?;
-                left.extend(self.guard(b)?);
+                // Both sides are looked at, so that what the right one binds is known or forgotten.
+                let (left, right) = (self.guard(a), self.guard(b));
+                let mut left = left?;
+                left.extend(right?);
                 Some(left)
             }
             ExprKind::Is(x, true, Some(name)) => {
-                let x = self.optional(x)?;
+                let Some(x) = self.optional(x) else {
+                    self.poison(&name.name);
+                    return None;
+                };
                 let Type::Option(inner) = x.ty.clone() else { return None };
                 let local = self.body.bind(name, &inner);
                 Some(vec![Conjunct::Binds(local, x)])
@@ -103,9 +108,26 @@ impl Checker<'_> {
         let mut otherwise = self.arm(last, &ty)?;
         for (guard, value) in done.into_iter().rev() {
             let value = self.arm(value, &ty)?;
-            otherwise = chain(guard, value, otherwise, &ty, span);
+            otherwise = self.chain(guard, value, otherwise, &ty, span);
         }
         Some(otherwise)
+    }
+
+    /// One arm of an `if`. What comes otherwise is written out once: an arm with several conjuncts makes an
+    /// optional first, else a chain of n such arms would grow like 2^n.
+    fn chain(&mut self, guard: Vec<Conjunct>, then: GExpr, otherwise: GExpr, ty: &Type, span: Span) -> GExpr {
+        let guard = merge(guard);
+        if guard.len() < 2 || matches!(ty, Type::Option(_)) {
+            return nest(guard, then, &otherwise, ty, span);
+        }
+        let optional = ty.clone().optional();
+        self.texts.intern("not given");
+        let none = GExpr::new(Op::MakeNone("not given".into()), Vec::new(), optional.clone(), span);
+        let some = GExpr::new(Op::MakeSome, vec![then], optional.clone(), span);
+        let chosen = nest(guard, some, &none, &optional, span);
+        let local = self.body.local(ty);
+        let value = GExpr::new(Op::Local(local), Vec::new(), ty.clone(), span);
+        GExpr::new(Op::IfSome { local, reason: None }, vec![chosen, value, otherwise], ty.clone(), span)
     }
 
     fn arm(&mut self, value: GExpr, ty: &Type) -> Option<GExpr> {
@@ -135,6 +157,10 @@ impl Checker<'_> {
                     let t = ty.get_or_insert_with(|| v.ty.clone()).clone();
                     let v = self.coerce(v, &t)?;
                     let (is_some, is_none) = sides(p);
+                    if is_some && is_none && some.is_none() && none.is_none() {
+                        // `otherwise` alone: the same whatever it is.
+                        return Some(v);
+                    }
                     if is_some && some.is_none() {
                         some = Some(v.clone());
                     }
@@ -332,11 +358,26 @@ pub(super) fn sides(p: &Pattern) -> (bool, bool) {
 }
 
 /// `if` on a guard: every conjunct must hold for `then`.
-fn chain(guard: Vec<Conjunct>, then: GExpr, otherwise: GExpr, ty: &Type, span: Span) -> GExpr {
+fn nest(guard: Vec<Conjunct>, then: GExpr, otherwise: &GExpr, ty: &Type, span: Span) -> GExpr {
     guard.into_iter().rev().fold(then, |then, c| match c {
         Conjunct::Holds(cond) => GExpr::new(Op::If, vec![cond, then, otherwise.clone()], ty.clone(), span),
         Conjunct::Binds(local, x) => {
             GExpr::new(Op::IfSome { local, reason: None }, vec![x, then, otherwise.clone()], ty.clone(), span)
         }
     })
+}
+
+/// Neighbouring conditions that bind nothing, as one.
+fn merge(guard: Vec<Conjunct>) -> Vec<Conjunct> {
+    let mut out: Vec<Conjunct> = Vec::new();
+    for c in guard {
+        match (out.pop(), c) {
+            (Some(Conjunct::Holds(a)), Conjunct::Holds(b)) => {
+                let span = a.span.to(b.span);
+                out.push(Conjunct::Holds(GExpr::new(Op::Binary(Binary::And), vec![a, b], Type::Bool, span)));
+            }
+            (last, c) => out.extend(last.into_iter().chain([c])),
+        }
+    }
+    out
 }

@@ -111,13 +111,15 @@ impl Checker<'_> {
     }
 
     fn no_list<T>(&mut self, list: &GExpr, op: &str) -> Option<T> {
-        let d = Diagnostic::error(code::MISMATCH, format!("`{op}` works on lists, this is {}", list.ty))
-            .at(list.span, list.ty.to_string());
         let d = match &list.ty {
             Type::Option(inner) if matches!(**inner, Type::List(..)) => {
-                d.hint("the list may be absent: take both ways with `match` or a guard `is some(x)`")
+                Diagnostic::error(code::ABSENCE, format!("`{op}` on a list that may be absent"))
+                    .at(list.span, list.ty.to_string())
+                    .hint("give a list for absence with `or`, or take both ways with `match … { some(x) => … none(why) => … }`")
             }
-            _ => d.hint("write it on a list, such as a reading of several beams or `heard(topic)`"),
+            _ => Diagnostic::error(code::MISMATCH, format!("`{op}` works on lists, this is {}", list.ty))
+                .at(list.span, list.ty.to_string())
+                .hint("write it on a list, such as a reading of several beams or `heard(topic)`"),
         };
         self.report(d);
         None

@@ -144,6 +144,12 @@ pub struct Checker<'a> {
     pub expanding: Vec<Name>,
     /// Depth of the expression being checked.
     pub depth: usize,
+    /// Names whose declaration is wrong: what follows from that is not the user's second mistake.
+    pub poisoned: BTreeSet<Name>,
+    /// Expression nodes that constants were written out to.
+    pub written_out: usize,
+    /// Whether that was too much, which is reported once.
+    pub too_much: bool,
 }
 
 /// Deepest expression, counted in the tree.
@@ -153,6 +159,11 @@ impl<'a> Checker<'a> {
     /// Reports an error.
     pub fn report(&mut self, d: Diagnostic) {
         self.errors.push(d);
+    }
+
+    /// Remembers that the declaration of `name` is wrong.
+    pub fn poison(&mut self, name: &Name) {
+        self.poisoned.insert(name.clone());
     }
 
     /// Checks `f` in a fresh body and gives that body back with the result.
@@ -175,10 +186,14 @@ impl<'a> Checker<'a> {
         }
         match (&value.ty, want) {
             (Type::Int, Type::Quantity(soifra_graph::Dim::NONE)) => {
-                if let Op::Const(soifra_graph::Value::Int(i)) = value.op {
-                    value.op = Op::Const(soifra_graph::Value::Number(i as f64));
+                use soifra_graph::{Binary, Value};
+                let span = value.span;
+                if let Op::Const(Value::Int(i)) = value.op {
+                    return Some(Expr::constant(Value::Number(i as f64), want.clone(), span));
                 }
-                value.ty = want.clone();
+                // A sum with the number zero is a number; registers hold both alike.
+                let zero = Expr::constant(Value::Number(0.0), want.clone(), span);
+                value = Expr::new(Op::Binary(Binary::Add), vec![value, zero], want.clone(), span);
                 Some(value)
             }
             (Type::List(t, n), Type::List(u, m))
@@ -246,7 +261,8 @@ impl<'a> Checker<'a> {
         if let Some(v) = e.as_const() {
             return Some(v.clone());
         }
-        let locals: Vec<(Type, Option<soifra_graph::Value>)> = e.local_types(&[]).into_iter().map(|t| (t, None)).collect();
+        let locals: Vec<(Type, Option<soifra_graph::Value>)> =
+            e.local_types(&[]).into_iter().map(|t| (t, None)).collect();
         let known = soifra_graph::eval::Known {
             types: &self.types,
             functions: &self.functions,

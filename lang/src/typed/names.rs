@@ -7,6 +7,9 @@ use soifra_graph::{
     Type, Value,
 };
 
+/// Most expression nodes that the constants of a program may be written out to.
+const MAX_WRITTEN_OUT: usize = 4_000_000;
+
 impl<'a> Checker<'a> {
     /// The value of a bare name.
     pub fn name(&mut self, name: &Name, span: Span, want: Option<&Type>) -> Option<GExpr> {
@@ -114,7 +117,10 @@ impl<'a> Checker<'a> {
         self.body.data = data;
         self.body.in_machine = in_machine;
         self.expanding.pop();
-        let value = value?;
+        let Some(value) = value else {
+            self.poison(name);
+            return None;
+        };
         let ty = value.ty.clone();
         let local = self.body.local(&ty);
         self.body.prelude.push(GStmt { kind: GStmtKind::Let(local, value), at: c.name.span });
@@ -132,13 +138,30 @@ impl<'a> Checker<'a> {
         let value = self.expr(&c.value, want);
         self.body.scope = scope;
         self.expanding.pop();
-        value.map(|v| GExpr { span, ..v })
+        let value = value?;
+        value.walk(&mut |_| self.written_out += 1);
+        if self.written_out > MAX_WRITTEN_OUT {
+            if !std::mem::replace(&mut self.too_much, true) {
+                self.report(
+                    Diagnostic::error(code::UNBOUNDED, "constants grow beyond all measure")
+                        .at(span, "written out here once more")
+                        .hint("make one of the constants in it a `param`, or shorten the chain of constants that use others twice"),
+                );
+            }
+            return None;
+        }
+        Some(GExpr { span, ..value })
     }
 
     fn ring(&mut self, name: &Name, span: Span) -> bool {
         if !self.expanding.contains(name) {
             return false;
         }
+        if self.poisoned.contains(name) {
+            return true;
+        }
+        let from = self.expanding.iter().position(|n| n == name).unwrap_or(0);
+        self.poisoned.extend(self.expanding[from..].iter().cloned());
         let ring: Vec<&str> = self.expanding.iter().map(|n| &**n).chain([&**name]).collect();
         let ring = ring.join(" → ");
         self.report(

@@ -62,7 +62,10 @@ impl<'a> Checker<'a> {
     fn stmt(&mut self, s: &Stmt, depth: usize) -> Option<Vec<GStmtKind>> {
         Some(vec![match &s.kind {
             StmtKind::Let(name, value) => {
-                let value = self.expr(value, None)?;
+                let Some(value) = self.expr(value, None) else {
+                    self.poison(&name.name);
+                    return None;
+                };
                 let local = self.body.bind(name, &value.ty.clone());
                 GStmtKind::Let(local, value)
             }
@@ -278,6 +281,10 @@ impl<'a> Checker<'a> {
                     let body = self.block(body, depth + 1);
                     self.body.scope.truncate(mark);
                     let (is_some, is_none) = super::choice::sides(p);
+                    if is_some && is_none && then.is_none() && otherwise.is_none() {
+                        // `otherwise` alone: the same whatever it is.
+                        return Some(GStmtKind::Rules(vec![Rule { guard: Vec::new(), body, at: p.span }]));
+                    }
                     if is_some && then.is_none() {
                         then = Some(body.clone());
                     }
@@ -380,7 +387,11 @@ impl<'a> Checker<'a> {
     ) -> Option<(Vec<GStmt>, Vec<(Name, u32, Type)>)> {
         let mut params = Vec::new();
         for (n, t) in &action.params {
-            params.push((n.name.clone(), self.resolve_type(t, None)?));
+            let Some(ty) = self.resolve_type(t, None) else {
+                self.poison(&n.name);
+                return None;
+            };
+            params.push((n.name.clone(), ty));
         }
         let values = self.arguments(name, &params, args, span)?;
         let (mut lets, mut scope) = (Vec::new(), Vec::new());
