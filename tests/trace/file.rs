@@ -1,6 +1,7 @@
 //! Writing and reading.
 
 use super::sample::{self, Log};
+use crate::support::folder;
 use soifra::trace_file::{self, CHUNK_BYTES, Reader, Trace, TraceError, Writer};
 use soifra_runtime::{Event, Record, Time, TraceSink};
 use std::{fs, path::Path};
@@ -13,10 +14,6 @@ pub fn write(path: &Path, records: &[Record]) -> trace_file::Finished {
     writer.finish().unwrap()
 }
 
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
-
 /// Records as their JSON, where NaN equals itself.
 fn texts(records: &[Record]) -> Vec<String> {
     records.iter().map(|r| serde_json::to_string(r).unwrap()).collect()
@@ -24,8 +21,8 @@ fn texts(records: &[Record]) -> Vec<String> {
 
 #[test]
 fn every_kind_of_record_comes_back() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_every_kind_of_record_comes_back");
+    let path = dir.join("t.mcap");
     let mut log = Log { records: Vec::new(), now: Time::ZERO };
     for (i, event) in sample::every_kind().into_iter().enumerate() {
         log.now = Time(i as i64 * 300_000_001);
@@ -45,8 +42,8 @@ fn every_kind_of_record_comes_back() {
 
 #[test]
 fn the_same_run_gives_the_same_bytes_and_the_digest_of_the_file() {
-    let dir = scratch();
-    let (a, b) = (dir.path().join("a.mcap"), dir.path().join("b.mcap"));
+    let dir = folder("trace_the_same_run_gives_the_same_bytes_and_the_digest_of_the_file");
+    let (a, b) = (dir.join("a.mcap"), dir.join("b.mcap"));
     let records = sample::run(10, 20);
     let finished = write(&a, &records);
     write(&b, &records);
@@ -60,8 +57,8 @@ fn the_same_run_gives_the_same_bytes_and_the_digest_of_the_file() {
 
 #[test]
 fn chunks_end_by_size_and_by_time() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_chunks_end_by_size_and_by_time");
+    let path = dir.join("t.mcap");
     let mut records = sample::run(5, 30);
     for _ in 0..1000 {
         let event = Event::Note { robot: 0, agent: "a@r1".into(), text: "x".repeat(5000) };
@@ -82,8 +79,8 @@ fn chunks_end_by_size_and_by_time() {
 
 #[test]
 fn a_file_cut_anywhere_gives_all_whole_chunks() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_a_file_cut_anywhere_gives_all_whole_chunks");
+    let path = dir.join("t.mcap");
     let records = sample::run(5, 6);
     write(&path, &records);
     let bytes = fs::read(&path).unwrap();
@@ -126,8 +123,8 @@ fn a_file_cut_anywhere_gives_all_whole_chunks() {
 
 #[test]
 fn every_damaged_byte_is_noticed_or_harmless() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_every_damaged_byte_is_noticed_or_harmless");
+    let path = dir.join("t.mcap");
     let records = sample::run(3, 3);
     write(&path, &records);
     let bytes = fs::read(&path).unwrap();
@@ -144,8 +141,8 @@ fn every_damaged_byte_is_noticed_or_harmless() {
 
 #[test]
 fn bad_files_are_told_apart_in_sentences() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_bad_files_are_told_apart_in_sentences");
+    let path = dir.join("t.mcap");
     let of = |bytes: &[u8]| Reader::new(bytes).and_then(Reader::into_trace).unwrap_err().to_string();
     assert!(of(b"").contains("empty"));
     assert!(of(b"mission m {}").contains("does not begin like an MCAP file"));
@@ -168,8 +165,8 @@ fn bad_files_are_told_apart_in_sentences() {
     let newer = of(&newer.into_inner().into_inner());
     assert!(newer.contains("schema version 2") && newer.contains("reads version 1"), "{newer}");
 
-    assert!(trace_file::read(dir.path()).unwrap_err().to_string().contains("directory"));
-    assert!(matches!(trace_file::read(dir.path().join("absent.mcap")), Err(TraceError::Io(_))));
+    assert!(trace_file::read(&dir).unwrap_err().to_string().contains("directory"));
+    assert!(matches!(trace_file::read(dir.join("absent.mcap")), Err(TraceError::Io(_))));
 
     // A record left out.
     let records = sample::run(5, 4);
@@ -184,8 +181,8 @@ fn bad_files_are_told_apart_in_sentences() {
 
 #[test]
 fn a_trace_that_another_tool_wrote_again_is_the_same_trace() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_a_trace_that_another_tool_wrote_again_is_the_same_trace");
+    let path = dir.join("t.mcap");
     let records = sample::run(10, 5);
     write(&path, &records);
     let bytes = fs::read(&path).unwrap();
@@ -204,8 +201,8 @@ fn a_trace_that_another_tool_wrote_again_is_the_same_trace() {
 
 #[test]
 fn what_was_written_before_a_kill_can_be_read() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_what_was_written_before_a_kill_can_be_read");
+    let path = dir.join("t.mcap");
     let records = sample::run(10, 20);
     let mut writer = Writer::create(&path, &sample::header()).unwrap();
     for r in &records {
@@ -223,16 +220,13 @@ fn what_was_written_before_a_kill_can_be_read() {
 
 #[test]
 fn paths_that_cannot_be_written_are_errors() {
-    let dir = scratch();
+    let dir = folder("trace_paths_that_cannot_be_written_are_errors");
     let header = sample::header();
-    assert!(Writer::create(dir.path(), &header).is_err());
-    assert!(Writer::create(dir.path().join("no/such/folder/t.mcap"), &header).is_err());
+    assert!(Writer::create(&dir, &header).is_err());
+    assert!(Writer::create(dir.join("no/such/folder/t.mcap"), &header).is_err());
     assert!(
-        Writer::create(
-            dir.path().join("t.mcap"),
-            &trace_file::Header { graph_json: "{".into(), ..header.clone() }
-        )
-        .is_err()
+        Writer::create(dir.join("t.mcap"), &trace_file::Header { graph_json: "{".into(), ..header.clone() })
+            .is_err()
     );
     #[cfg(target_os = "linux")]
     {
@@ -243,8 +237,8 @@ fn paths_that_cannot_be_written_are_errors() {
 
 #[test]
 fn a_disk_that_fills_up_is_an_error_and_stays_one() {
-    let dir = scratch();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_a_disk_that_fills_up_is_an_error_and_stays_one");
+    let path = dir.join("t.mcap");
     // A pipe that nobody reads any more stands for the disk: writes begin to fail after some time.
     let made = std::process::Command::new("mkfifo").arg(&path).status();
     if !made.is_ok_and(|s| s.success()) {

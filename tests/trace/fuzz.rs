@@ -1,12 +1,13 @@
 //! The fuzz body of trace loading over a corpus: a real file cut, flipped, and rearranged.
 
 use super::sample;
+use crate::support::folder;
 use soifra::fuzz::fuzz_trace;
 use std::fs;
 
-fn corpus() -> Vec<Vec<u8>> {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("t.mcap");
+fn corpus(name: &str) -> Vec<Vec<u8>> {
+    let dir = folder(name);
+    let path = dir.join("t.mcap");
     super::file::write(&path, &sample::run(1, 2));
     let compressed = fs::read(&path).unwrap();
     // The same without compression and checksums: damage gets past the envelope, to the records.
@@ -21,7 +22,7 @@ fn corpus() -> Vec<Vec<u8>> {
 
 #[test]
 fn cut_files() {
-    for bytes in corpus() {
+    for bytes in corpus("trace_cut_files") {
         for cut in (0..bytes.len()).step_by(397).chain(0..60) {
             fuzz_trace(&bytes[..cut]);
         }
@@ -30,7 +31,7 @@ fn cut_files() {
 
 #[test]
 fn flipped_bits() {
-    for bytes in corpus() {
+    for bytes in corpus("trace_flipped_bits") {
         for i in (0..bytes.len()).step_by(401).chain(0..100) {
             let mut damaged = bytes.clone();
             damaged[i] ^= 1 << (i % 8);
@@ -42,7 +43,7 @@ fn flipped_bits() {
 #[test]
 fn lengths_that_lie() {
     // Every field of eight bytes in the first part overwritten with great numbers.
-    for bytes in corpus() {
+    for bytes in corpus("trace_lengths_that_lie") {
         for i in (8..200).chain((200..bytes.len() - 8).step_by(997)) {
             for value in [u64::MAX, u64::MAX - 8, 1 << 62, 1 << 31, 0] {
                 let mut damaged = bytes.clone();
@@ -55,7 +56,7 @@ fn lengths_that_lie() {
 
 #[test]
 fn numbers_that_overflow() {
-    for bytes in corpus() {
+    for bytes in corpus("trace_numbers_that_overflow") {
         for (from, to) in [
             (&b"\"nsec\":0"[..], &b"\"nsec\":9"[..]),
             (b"\"sec\":1", b"\"sec\":-"),

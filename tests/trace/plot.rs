@@ -1,6 +1,7 @@
 //! The top view.
 
 use super::sample;
+use crate::support::folder;
 use soifra::{plot, trace_file::Reader, trace_file::Trace};
 use soifra_graph::Value;
 use soifra_runtime::{Event, Record, Time};
@@ -42,8 +43,8 @@ fn a_picture_names_mission_seed_outcome_robots_and_units() {
 
 #[test]
 fn a_streamed_trace_gives_the_picture_of_the_trace_in_memory() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_a_streamed_trace_gives_the_picture_of_the_trace_in_memory");
+    let path = dir.join("t.mcap");
     super::file::write(&path, &sample::run(10, 20));
     let streamed = plot::top_view_of(Reader::open(&path).unwrap()).unwrap();
     assert_eq!(streamed, plot::top_view(&sample::trace()));

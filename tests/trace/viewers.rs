@@ -1,6 +1,7 @@
 //! What other programs see of a trace.
 
 use super::{file::write, sample};
+use crate::support::folder;
 use serde_json::Value as Json;
 use soifra_runtime::{Record, Time};
 use std::{collections::BTreeMap, fs};
@@ -43,8 +44,8 @@ fn check(schema: &Json, value: &Json, place: &str) {
 
 #[test]
 fn every_message_fits_its_schema() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_every_message_fits_its_schema");
+    let path = dir.join("t.mcap");
     let record =
         |(i, event)| Record { n: i as u64, t: Time(i as i64 * 1_300_000_000), causes: vec![], event };
     let records: Vec<Record> = sample::every_kind().into_iter().enumerate().map(record).collect();
@@ -78,8 +79,8 @@ fn every_message_fits_its_schema() {
 
 #[test]
 fn the_scene_shows_everything_that_has_a_body() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("t.mcap");
+    let dir = folder("trace_the_scene_shows_everything_that_has_a_body");
+    let path = dir.join("t.mcap");
     write(&path, &sample::run(2, 2));
     let bytes = fs::read(&path).unwrap();
     let scene = mcap::MessageStream::new(&bytes)
