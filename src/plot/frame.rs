@@ -40,7 +40,8 @@ fn subtitle(scene: &Scene) -> String {
     let t = format!("{t:.3}");
     let t = t.trim_end_matches('0').trim_end_matches('.');
     let end = match &scene.tracks.outcome {
-        Some((outcome, reason)) if reason.is_empty() => format!("{outcome} at {t} s"),
+        // A success needs no reason.
+        Some((outcome, reason)) if reason.is_empty() || outcome == "success" => format!("{outcome} at {t} s"),
         Some((outcome, reason)) => format!("{outcome} at {t} s: {reason}"),
         None if scene.complete => format!("no outcome recorded, last record at {t} s"),
         None => format!("the trace is cut off at {t} s"),

@@ -22,7 +22,7 @@ pub struct Trace {
     pub header: Header,
     /// What happened, in order; numbers count from 0 without gaps.
     pub records: Vec<Record>,
-    /// Whether the file was closed by its writer. If not, the records end before the run did.
+    /// Whether the file was closed by its writer. If not, the records may end before the run did.
     pub complete: bool,
 }
 

@@ -32,9 +32,9 @@ pub(crate) enum Content {
 /// How the stream ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
-    /// The data section was closed by its writer.
+    /// With the footer: its writer closed it.
     Closed,
-    /// The stream ended before.
+    /// Before.
     CutOff,
 }
 
@@ -114,7 +114,7 @@ impl<R: Read> Scanner<R> {
                     decompress(&self.body, &mut self.chunk).map_err(|e| damaged(at, e))?;
                     (self.read, self.chunk_offset) = (0, at);
                 }
-                op::DATA_END => self.end = Some(End::Closed),
+                op::DATA_END => self.end = Some(self.summary()?),
                 _ => {
                     if let Some((content, data)) = interpret(&mut self.channels, op, &self.body, at)? {
                         return Ok(Some(Message { content, data: &self.body[self.body.len() - data..], at }));
@@ -123,6 +123,22 @@ impl<R: Read> Scanner<R> {
             }
         }
         Ok(None)
+    }
+
+    /// Passes over the summary. What is wrong with it does not matter to us, who have read everything: the
+    /// file counts as cut off there.
+    fn summary(&mut self) -> Result<End, TraceError> {
+        loop {
+            match self.record() {
+                Ok(Some(op::FOOTER)) => {
+                    let closed = self.take(mcap::MAGIC.len() as u64)? && self.body == mcap::MAGIC;
+                    return Ok(if closed { End::Closed } else { End::CutOff });
+                }
+                Ok(Some(_)) => {}
+                Ok(None) | Err(TraceError::Damaged { .. }) => return Ok(End::CutOff),
+                Err(e) => return Err(e),
+            }
+        }
     }
 
     /// Reads the next record of the file into `body` and returns its opcode; `None` when the stream ends

@@ -111,6 +111,7 @@ fn a_file_cut_anywhere_gives_all_whole_chunks() {
             Ok(trace) => {
                 assert_eq!(Some(trace.records.len() as u64), whole, "cut at {cut}");
                 assert_eq!(trace.records[..], records[..trace.records.len()]);
+                assert!(!trace.complete);
                 last = last.max(trace.records.len());
             }
             Err(TraceError::Empty) => assert_eq!(cut, 0),
