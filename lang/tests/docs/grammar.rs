@@ -115,9 +115,18 @@ fn body(rules: &BTreeMap<String, Vec<Token>>, name: &str, inline: &[&str]) -> St
         i += 1;
     }
     // The ends of a file and what error recovery skips are no concern of a writer.
-    [(" | junk", ""), ("SOI ", ""), (" EOI", ""), ("(character)", "character")]
-        .iter()
-        .fold(out, |s, (a, b)| s.replace(a, b))
+    [
+        (" | junk", ""),
+        ("SOI ", ""),
+        (" EOI", ""),
+        ("(character)", "character"),
+        ("(prefix )", "prefix"),
+        ("  ", " "),
+    ]
+    .iter()
+    .fold(out, |s, (a, b)| s.replace(a, b))
+    .trim()
+    .to_string()
 }
 
 /// A rule of the grammar, or of pest itself, as it is shown.
@@ -128,6 +137,7 @@ fn word(rule: &str) -> String {
         "IDC" => "(letter | digit | \"_\")".into(),
         "ANY" => "character".into(),
         "type_ref" => "type".into(),
+        "gap" => String::new(),
         other => other.into(),
     }
 }
@@ -201,6 +211,7 @@ const IN_WORDS: &[&str] = &[
     "KEYWORD",
     "RESERVED",
     "KEYWORD_NOT_UNIT",
+    "gap",
     "junk",
     "item_alone",
     "ITEM_START",

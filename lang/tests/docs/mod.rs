@@ -7,6 +7,7 @@ mod examples;
 mod glossary;
 mod grammar;
 mod limits;
+mod links;
 mod regions;
 mod tables;
 
