@@ -1,5 +1,6 @@
 # What a newcomer needs: `make run`, `make test`. Everything a target needs it sets up itself.
 SHELL := /bin/bash
+export PATH := $(PATH):$(HOME)/.cargo/bin
 SOIFRA := target/release/soifra
 MISSION ?= missions/khepera/sim1.soi
 SEED ?= 1
