@@ -33,7 +33,11 @@ pub fn compile(path: &str, platform: Option<&str>) -> Result<Compiled, Refusal> 
 }
 
 /// Compiles the mission called `mission` of a file that may hold several.
-pub fn compile_mission(path: &str, platform: Option<&str>, mission: Option<&str>) -> Result<Compiled, Refusal> {
+pub fn compile_mission(
+    path: &str,
+    platform: Option<&str>,
+    mission: Option<&str>,
+) -> Result<Compiled, Refusal> {
     let checked = check(path, platform, mission)?;
     match checked.graph {
         Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
@@ -54,10 +58,12 @@ pub fn check(path: &str, platform: Option<&str>, mission: Option<&str>) -> Resul
         return load(path, &text, platform);
     }
     if text.trim().is_empty() {
-        let hint = "a mission begins with a line `mission NAME \"title\" {`; the tutorial has one to start from";
+        let hint =
+            "a mission begins with a line `mission NAME \"title\" {`; the tutorial has one to start from";
         return Err(Refusal::about(path, "S0701", "there is no mission in this file", "it is empty", hint));
     }
-    let options = CheckOptions { platform: platform.map(str::to_string), mission: mission.map(str::to_string) };
+    let options =
+        CheckOptions { platform: platform.map(str::to_string), mission: mission.map(str::to_string) };
     let checked = soifra_lang::check(path, &text, &mut files::Loader, &options);
     let findings = Findings { diagnostics: checked.diagnostics, sources: checked.sources };
     if findings.errors() > 0 {
@@ -121,9 +127,10 @@ fn setting(graph: &Graph, name: &str, text: &str) -> Result<(usize, Value), Refu
     match soifra_lang::parse_value(text, &param.ty, &graph.types) {
         Ok(value) => Ok((index, value)),
         Err(why) => {
-            let mut diagnostic = Diagnostic::error("S9011", format!("the value does not fit the parameter: {why}"))
-                .at(param.at, format!("`{name}` is declared here, a {}", param.ty))
-                .hint(format!("`--set {name}=…` takes {}", expected(&param.ty, graph)));
+            let mut diagnostic =
+                Diagnostic::error("S9011", format!("the value does not fit the parameter: {why}"))
+                    .at(param.at, format!("`{name}` is declared here, a {}", param.ty))
+                    .hint(format!("`--set {name}=…` takes {}", expected(&param.ty, graph)));
             if param.at == Span::default() {
                 diagnostic.labels.clear();
             }

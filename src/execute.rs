@@ -63,7 +63,11 @@ impl<'m> Prepared<'m> {
     }
 
     /// Runs with a trace file. Whether the file can be written is known before anything starts.
-    pub fn run_traced(&self, path: &str, stop: &AtomicBool) -> Result<(RunReport, trace_file::Finished), Refusal> {
+    pub fn run_traced(
+        &self,
+        path: &str,
+        stop: &AtomicBool,
+    ) -> Result<(RunReport, trace_file::Finished), Refusal> {
         let header = header(self.mission, &self.settings, &self.scene)?;
         let unwritable = |e: std::io::Error| files::unwritable(path, &e);
         files::make_folder(path).map_err(unwritable)?;
@@ -89,7 +93,8 @@ fn header(mission: &Mission, settings: &Settings, scene: &Scene) -> Result<trace
     params.extend(settings.params.clone());
     let graph_json = graph_file::canonical(graph).map_err(|e| {
         let source = Source { path: graph.name.to_string(), text: String::new() };
-        Refusal::with(Diagnostic::error("S9999", format!("the graph cannot be written: {e}")), source).exit(Exit::Internal)
+        Refusal::with(Diagnostic::error("S9999", format!("the graph cannot be written: {e}")), source)
+            .exit(Exit::Internal)
     })?;
     Ok(trace_file::Header {
         mission: graph.name.to_string(),

@@ -82,7 +82,11 @@ impl Gatherer {
                 format!("{}: {agent}.{unit} {from} -> {to}", self.robot(*robot))
             }
             Event::Arbitration { robot, actuator, winner, .. } => {
-                format!("{}: {actuator} goes to {}", self.robot(*robot), winner.as_deref().unwrap_or("nobody"))
+                format!(
+                    "{}: {actuator} goes to {}",
+                    self.robot(*robot),
+                    winner.as_deref().unwrap_or("nobody")
+                )
             }
             Event::SafeAction { robot, action, reason, .. } => {
                 format!("{}: safe action {action}, {reason}", self.robot(*robot))
@@ -125,21 +129,29 @@ fn machine() -> String {
 impl Golden {
     /// The first thing in which `now` differs from this golden, in words.
     pub fn difference(&self, now: &Golden) -> Option<String> {
-        let text = |g: &Golden, i: usize| g.events.get(i).map_or("nothing more".to_string(), |(t, e)| format!("{e} at {t} s"));
+        let text = |g: &Golden, i: usize| {
+            g.events.get(i).map_or("nothing more".to_string(), |(t, e)| format!("{e} at {t} s"))
+        };
         for i in 0..self.events.len().max(now.events.len()) {
             let same = match (self.events.get(i), now.events.get(i)) {
                 (Some(a), Some(b)) => a.1 == b.1 && near(a.0, b.0),
                 _ => false,
             };
             if !same {
-                return Some(format!("event {}: accepted was `{}`, now it is `{}`", i + 1, text(self, i), text(now, i)));
+                return Some(format!(
+                    "event {}: accepted was `{}`, now it is `{}`",
+                    i + 1,
+                    text(self, i),
+                    text(now, i)
+                ));
             }
         }
         if self.outcome != now.outcome {
             return Some(format!("the outcome was {}, now it is {}", self.outcome, now.outcome));
         }
         for name in self.figures.keys().chain(now.figures.keys()) {
-            let (a, b) = (self.figures.get(name).copied().flatten(), now.figures.get(name).copied().flatten());
+            let (a, b) =
+                (self.figures.get(name).copied().flatten(), now.figures.get(name).copied().flatten());
             let same = match (a, b) {
                 (Some(a), Some(b)) => near(a, b),
                 (a, b) => a == b,

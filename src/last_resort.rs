@@ -13,7 +13,10 @@ pub fn guarded(work: impl FnOnce() -> Exit + Send + 'static) -> Exit {
     match std::thread::Builder::new().name("soifra".into()).stack_size(STACK).spawn(work) {
         Ok(thread) => thread.join().unwrap_or(Exit::Internal),
         Err(e) => {
-            output::note(&format!("error[S9014]: the system gives no thread with a stack of {} MB: {e}", STACK >> 20));
+            output::note(&format!(
+                "error[S9014]: the system gives no thread with a stack of {} MB: {e}",
+                STACK >> 20
+            ));
             Exit::Aborted
         }
     }
@@ -21,7 +24,8 @@ pub fn guarded(work: impl FnOnce() -> Exit + Send + 'static) -> Exit {
 
 fn tell(info: &PanicHookInfo<'_>) {
     let what = info.payload();
-    let text = what.downcast_ref::<&str>().copied().or_else(|| what.downcast_ref::<String>().map(String::as_str));
+    let text =
+        what.downcast_ref::<&str>().copied().or_else(|| what.downcast_ref::<String>().map(String::as_str));
     let at = info.location().map_or(String::new(), |l| format!(" ({}:{})", l.file(), l.line()));
     output::note(&format!(
         "error[S9999]: soifra met a defect of its own: {}{at}\n  help: this is not your mission's fault; please report it with the command line and the files",

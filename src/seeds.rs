@@ -43,7 +43,8 @@ fn range(a: u64, b: u64) -> Result<Vec<u64>, String> {
 
 /// Parses a shard `i/n`, counted from 1.
 pub fn shard(text: &str) -> Result<(usize, usize), String> {
-    let parts = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
+    let parts =
+        text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
     match parts {
         Some((i, n)) if (1..=n).contains(&i) => Ok((i, n)),
         _ => Err(format!("`{text}` is no shard: give i/n with i from 1 to n, as 2/4")),
@@ -58,7 +59,12 @@ mod tests {
     fn lists_and_shards() {
         assert_eq!(parse("3"), Ok(vec![1, 2, 3]));
         assert_eq!(parse("5..7, 2,6"), Ok(vec![2, 5, 6, 7]));
-        assert!(parse("0").is_err() && parse("7..5").is_err() && parse("x").is_err() && parse("0..99999999999").is_err());
+        assert!(
+            parse("0").is_err()
+                && parse("7..5").is_err()
+                && parse("x").is_err()
+                && parse("0..99999999999").is_err()
+        );
         assert_eq!(shard("2/4"), Ok((2, 4)));
         assert!(shard("0/4").is_err() && shard("5/4").is_err() && shard("2").is_err());
     }

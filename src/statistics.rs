@@ -33,7 +33,14 @@ impl Summary {
         let sd = if n > 1 { (squares / (n - 1) as f64).sqrt() } else { 0.0 };
         v.sort_by(f64::total_cmp);
         let median = if n % 2 == 1 { v[n / 2] } else { (v[n / 2 - 1] + v[n / 2]) / 2.0 };
-        Summary { mean: Some(mean), sd: Some(sd), min: Some(v[0]), median: Some(median), max: Some(v[n - 1]), n }
+        Summary {
+            mean: Some(mean),
+            sd: Some(sd),
+            min: Some(v[0]),
+            median: Some(median),
+            max: Some(v[n - 1]),
+            n,
+        }
     }
 }
 

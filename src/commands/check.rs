@@ -54,8 +54,14 @@ struct File {
 
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
-    let mut document =
-        Document { schema: output::SCHEMA, outcome: "success", errors: 0, warnings: 0, files: Vec::new(), diagnostics: Vec::new() };
+    let mut document = Document {
+        schema: output::SCHEMA,
+        outcome: "success",
+        errors: 0,
+        warnings: 0,
+        files: Vec::new(),
+        diagnostics: Vec::new(),
+    };
     for path in &a.files {
         let (findings, sound, graph) = match compile::check(path, a.platform.as_deref(), None) {
             Ok(c) => (c.findings, true, c.graph),
@@ -71,7 +77,14 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         document.warnings += findings.warnings();
         document.diagnostics.extend(findings.to_json());
         let (errors, warnings) = (findings.errors(), findings.warnings());
-        document.files.push(File { path: path.clone(), sound, mission, graph_digest: digest, errors, warnings });
+        document.files.push(File {
+            path: path.clone(),
+            sound,
+            mission,
+            graph_digest: digest,
+            errors,
+            warnings,
+        });
     }
     let denied = a.deny == Some(Deny::Warnings) && document.warnings > 0;
     let refused = denied || document.files.iter().any(|f| !f.sound);

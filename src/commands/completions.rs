@@ -6,7 +6,9 @@ use clap_complete::Shell;
 
 /// Arguments.
 #[derive(Debug, Args)]
-#[command(after_help = "For bash: soifra completions bash > ~/.local/share/bash-completion/completions/soifra")]
+#[command(
+    after_help = "For bash: soifra completions bash > ~/.local/share/bash-completion/completions/soifra"
+)]
 pub struct Arguments {
     /// The shell
     shell: Shell,

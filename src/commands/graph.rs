@@ -1,6 +1,8 @@
 //! `soifra graph`: the behaviour graph as a picture or as data.
 
-use crate::{cli::Mission, compile, exit::Exit, files, graph_file, graph_view, output, output::Format, report::Refusal};
+use crate::{
+    cli::Mission, compile, exit::Exit, files, graph_file, graph_view, output, output::Format, report::Refusal,
+};
 use clap::{Args, ValueEnum, ValueHint};
 use soifra_graph::Graph;
 
@@ -44,7 +46,8 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let compiled = compile::compile(&a.mission.file, a.mission.platform.as_deref())?;
     compiled.findings.print();
     let text = render(&compiled.graph, a.format).map_err(|e| {
-        Refusal::about(&a.mission.file, "S9999", "the graph cannot be written", e, "please report this").exit(Exit::Internal)
+        Refusal::about(&a.mission.file, "S9999", "the graph cannot be written", e, "please report this")
+            .exit(Exit::Internal)
     })?;
     match &a.output {
         Some(path) => files::write(path, text.as_bytes())?,

@@ -31,11 +31,23 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             drawing.to_svg().into_bytes()
         } else if lower.ends_with(".png") {
             drawing.to_png(WIDTH).map_err(|e| {
-                Refusal::about(path, "S9012", "the picture cannot be drawn", e.to_string(), "write it as .svg")
+                Refusal::about(
+                    path,
+                    "S9012",
+                    "the picture cannot be drawn",
+                    e.to_string(),
+                    "write it as .svg",
+                )
             })?
         } else {
             let hint = "end its name in .svg or .png";
-            return Err(Refusal::about(path, "S9012", "the file cannot be written", "this is no kind of picture", hint));
+            return Err(Refusal::about(
+                path,
+                "S9012",
+                "the file cannot be written",
+                "this is no kind of picture",
+                hint,
+            ));
         };
         files::write(path, &bytes)?;
     }

@@ -59,7 +59,8 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let mut reader = Reader::open(&a.trace).map_err(|e| unreadable(&a.trace, &e))?;
     let header = reader.header().clone();
     let mission = execute::load(graph(&a.trace, &header.graph_json)?)?;
-    let settings = Settings { seed: header.seed(), params: header.params.clone(), threads: execute::threads(a.threads) };
+    let settings =
+        Settings { seed: header.seed(), params: header.params.clone(), threads: execute::threads(a.threads) };
 
     let tape = Tape { path: &a.trace, reader: &mut reader, count: 0, failure: RefCell::default() };
     let (result, tape) = replay(a, &mission, &settings, tape)?;
@@ -108,14 +109,25 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 
 type Replayed<'r> = (Result<RunReport, ReplayError>, Tape<'r>);
 
-fn replay<'r>(a: &Arguments, mission: &Mission, settings: &Settings, mut tape: Tape<'r>) -> Result<Replayed<'r>, Refusal> {
+fn replay<'r>(
+    a: &Arguments,
+    mission: &Mission,
+    settings: &Settings,
+    mut tape: Tape<'r>,
+) -> Result<Replayed<'r>, Refusal> {
     let result = if a.recorded {
         replay::verify(mission, settings, &mut tape)
     } else {
         match mission.scene(settings) {
             Ok(scene) => {
                 let mut simulator = Simulator::new(&scene).map_err(|why| {
-                    Refusal::about(&a.trace, "S9020", "the mission cannot be set up", why, "replay it with `--recorded`")
+                    Refusal::about(
+                        &a.trace,
+                        "S9020",
+                        "the mission cannot be set up",
+                        why,
+                        "replay it with `--recorded`",
+                    )
                 })?;
                 replay::resimulate(mission, settings, &scene, &mut simulator, &mut tape)
             }
@@ -168,7 +180,13 @@ fn graph(path: &str, json: &str) -> Result<soifra_graph::Graph, Refusal> {
 
 /// The refusal for a trace that cannot be read.
 pub fn unreadable(path: &str, e: &TraceError) -> Refusal {
-    Refusal::about(path, "S9018", "the trace cannot be read", e.to_string(), "name a trace that `soifra run` wrote")
+    Refusal::about(
+        path,
+        "S9018",
+        "the trace cannot be read",
+        e.to_string(),
+        "name a trace that `soifra run` wrote",
+    )
 }
 
 fn tell(path: &str, d: &Difference) {

@@ -19,7 +19,9 @@ use std::collections::BTreeMap;
 
 /// Arguments.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  soifra run patrol.soi --seed 7\n  soifra run patrol.soi --set critical_distance=3m --set rules=careful --trace none")]
+#[command(
+    after_help = "Examples:\n  soifra run patrol.soi --seed 7\n  soifra run patrol.soi --set critical_distance=3m --set rules=careful --trace none"
+)]
 pub struct Arguments {
     #[command(flatten)]
     mission: Mission,
@@ -151,7 +153,17 @@ fn human(r: &RunReport, trace: Option<&Trace>) -> String {
         })
         .collect();
     s += &table(
-        &["robot", "platform", "start m", "final m", "steps", "path m", "reached", "to target m", "collisions"],
+        &[
+            "robot",
+            "platform",
+            "start m",
+            "final m",
+            "steps",
+            "path m",
+            "reached",
+            "to target m",
+            "collisions",
+        ],
         &rows,
     );
     if r.robots.len() > ROBOTS {
@@ -167,13 +179,19 @@ fn human(r: &RunReport, trace: Option<&Trace>) -> String {
                     Some(false) => "violated",
                     None => "not known",
                 };
-                vec![e.text.clone(), held.into(), e.first_violation_s.map_or("–".into(), |t| figure(Some(t))), figure(e.margin)]
+                vec![
+                    e.text.clone(),
+                    held.into(),
+                    e.first_violation_s.map_or("–".into(), |t| figure(Some(t))),
+                    figure(e.margin),
+                ]
             })
             .collect();
         s += &format!("\n{}", table(&["expectation", "", "first violation s", "margin"], &rows));
     }
     if !r.goals.is_empty() {
-        let rows: Vec<Vec<String>> = r.goals.iter().map(|g| vec![g.name.clone(), g.status.to_string()]).collect();
+        let rows: Vec<Vec<String>> =
+            r.goals.iter().map(|g| vec![g.name.clone(), g.status.to_string()]).collect();
         s += &format!("\n{}", table(&["goal", "status"], &rows));
     }
     if !r.metrics.is_empty() {

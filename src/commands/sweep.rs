@@ -92,11 +92,21 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 
 fn execute(a: &Sweep) -> Result<(Document, Exit), Refusal> {
     let wrong = |argument: String, why: String| {
-        Refusal::about(&argument, "S9015", "a list of seeds or a shard is wrong", why, "`soifra sweep --help` shows examples")
+        Refusal::about(
+            &argument,
+            "S9015",
+            "a list of seeds or a shard is wrong",
+            why,
+            "`soifra sweep --help` shows examples",
+        )
     };
     let file = a.file.as_deref().unwrap_or_default();
     let seeds = seeds::parse(&a.seeds).map_err(|e| wrong(format!("--seeds {}", a.seeds), e))?;
-    let shard = a.shard.as_deref().map(|s| seeds::shard(s).map_err(|e| wrong(format!("--shard {s}"), e))).transpose()?;
+    let shard = a
+        .shard
+        .as_deref()
+        .map(|s| seeds::shard(s).map_err(|e| wrong(format!("--shard {s}"), e)))
+        .transpose()?;
     let mut sets: Vec<(String, Vec<String>)> = Vec::new();
     for text in &a.sets {
         let (name, values) = compile::split_setting(text)?;
@@ -123,8 +133,9 @@ fn merge(paths: &[String]) -> Result<(Document, Exit), Refusal> {
         })?;
         shards.push((path.clone(), document));
     }
-    let merged = Document::merge(shards)
-        .map_err(|why| Refusal::about("sweep merge", "S9016", "these sweep results do not go together", why, hint))?;
+    let merged = Document::merge(shards).map_err(|why| {
+        Refusal::about("sweep merge", "S9016", "these sweep results do not go together", why, hint)
+    })?;
     let exit = merged.runs.iter().map(|r| Exit::of_outcome(&r.outcome)).max().unwrap_or(Exit::Success);
     Ok((merged, exit))
 }

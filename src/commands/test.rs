@@ -68,8 +68,13 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     for path in &a.paths {
         gather(Path::new(path), &mut sources)?;
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(execute::threads(a.threads)).stack_size(16 << 20).build().ok();
-    let mut document = Document { schema: output::SCHEMA, outcome: "success", passed: 0, failed: 0, tests: Vec::new() };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(execute::threads(a.threads))
+        .stack_size(16 << 20)
+        .build()
+        .ok();
+    let mut document =
+        Document { schema: output::SCHEMA, outcome: "success", passed: 0, failed: 0, tests: Vec::new() };
     let mut worst = Exit::Success;
     for path in &sources {
         let path = path.to_string_lossy();
@@ -78,8 +83,15 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             // A file that does not pass the check fails as a whole; the others are still run.
             Err(refusal) => {
                 refusal.findings.print();
-                let failures = refusal.findings.diagnostics.iter().map(|d| format!("{}: {}", d.code, d.title)).collect();
-                document.tests.push(Entry { path: path.into(), name: "check".into(), passed: false, failures, exit: refusal.exit });
+                let failures =
+                    refusal.findings.diagnostics.iter().map(|d| format!("{}: {}", d.code, d.title)).collect();
+                document.tests.push(Entry {
+                    path: path.into(),
+                    name: "check".into(),
+                    passed: false,
+                    failures,
+                    exit: refusal.exit,
+                });
             }
         }
         if interrupt::requested() {
@@ -89,7 +101,13 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     if document.tests.is_empty() && !a.accept {
         let named = a.paths.join(" ");
         let hint = "write a `test`, or make a golden with `soifra test --accept`";
-        return Err(Refusal::about(&named, "S9021", "there is nothing to test", "no mission here has a test or a golden", hint));
+        return Err(Refusal::about(
+            &named,
+            "S9021",
+            "there is nothing to test",
+            "no mission here has a test or a golden",
+            hint,
+        ));
     }
     for t in &document.tests {
         worst = worst.max(t.exit);
@@ -110,7 +128,13 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 fn gather(path: &Path, out: &mut Vec<PathBuf>) -> Result<(), Refusal> {
     let name = path.to_string_lossy();
     let meta = fs::metadata(path).map_err(|e| {
-        Refusal::about(&name, "S9001", "the file cannot be read", files::reason(&e), "name a mission, or a folder of missions")
+        Refusal::about(
+            &name,
+            "S9001",
+            "the file cannot be read",
+            files::reason(&e),
+            "name a mission, or a folder of missions",
+        )
     })?;
     if !meta.is_dir() {
         out.push(path.to_path_buf());
@@ -164,20 +188,37 @@ fn entry(path: &str, name: String, failures: Vec<String>, code: &'static str) ->
     let passed = failures.is_empty();
     if !passed {
         let title = format!("{name} failed: {}", failures.join("; "));
-        let hint = if code == "S9019" { "if this is meant, accept it with `soifra test --accept`" } else { "`soifra run` with that seed records what happened" };
+        let hint = if code == "S9019" {
+            "if this is meant, accept it with `soifra test --accept`"
+        } else {
+            "`soifra run` with that seed records what happened"
+        };
         let d = Diagnostic::error(code, title).at(soifra_graph::Span::default(), "").hint(hint);
         let source = Source { path: path.into(), text: String::new() };
         Findings { diagnostics: vec![d], sources: vec![source] }.print();
     }
-    Entry { path: path.into(), name, passed, failures, exit: if passed { Exit::Success } else { Exit::Failed } }
+    Entry {
+        path: path.into(),
+        name,
+        passed,
+        failures,
+        exit: if passed { Exit::Success } else { Exit::Failed },
+    }
 }
 
 /// Runs every seed of a test.
-fn test(path: &str, case: &TestCase, mission: &Mission, pool: Option<&rayon::ThreadPool>) -> Result<Entry, Refusal> {
+fn test(
+    path: &str,
+    case: &TestCase,
+    mission: &Mission,
+    pool: Option<&rayon::ThreadPool>,
+) -> Result<Entry, Refusal> {
     let sets: Vec<(String, String)> = case.sets.iter().map(|(n, v)| (n.to_string(), v.clone())).collect();
     let values = compile::settings(mission.graph(), &sets)?;
     let seeds: Vec<u64> = (case.seeds.0..=case.seeds.1).collect();
-    let work = || seeds.par_iter().map(|seed| one(case, mission, *seed, &values)).collect::<Result<Vec<_>, Refusal>>();
+    let work = || {
+        seeds.par_iter().map(|seed| one(case, mission, *seed, &values)).collect::<Result<Vec<_>, Refusal>>()
+    };
     let results = match pool {
         Some(pool) => pool.install(work)?,
         None => work()?,
@@ -185,7 +226,12 @@ fn test(path: &str, case: &TestCase, mission: &Mission, pool: Option<&rayon::Thr
     Ok(entry(path, format!("test {}", case.name), results.into_iter().flatten().collect(), "S9022"))
 }
 
-fn one(case: &TestCase, mission: &Mission, seed: u64, values: &[(usize, Value)]) -> Result<Vec<String>, Refusal> {
+fn one(
+    case: &TestCase,
+    mission: &Mission,
+    seed: u64,
+    values: &[(usize, Value)],
+) -> Result<Vec<String>, Refusal> {
     let settings = execute::settings(mission.graph(), seed, values, 1);
     let report = execute::Prepared::new(mission, settings)?.run(&interrupt::flag())?;
     Ok(failures(case, seed, &report))
@@ -194,7 +240,12 @@ fn one(case: &TestCase, mission: &Mission, seed: u64, values: &[(usize, Value)])
 fn failures(case: &TestCase, seed: u64, r: &RunReport) -> Vec<String> {
     let mut out = Vec::new();
     if r.outcome.name() != &*case.outcome {
-        out.push(format!("seed {seed}: the outcome is {} ({}), expected {}", r.outcome.name(), r.reason, case.outcome));
+        out.push(format!(
+            "seed {seed}: the outcome is {} ({}), expected {}",
+            r.outcome.name(),
+            r.reason,
+            case.outcome
+        ));
         let violated = r.expectations.iter().filter(|e| e.held == Some(false));
         out.extend(violated.map(|e| {
             let at = e.first_violation_s.map_or(String::new(), |t| format!(" first at {t} s"));
@@ -260,7 +311,13 @@ fn compare(at: &Path, now: &Golden) -> Result<Option<String>, Refusal> {
     let path = at.to_string_lossy();
     let text = files::read_text(&path)?;
     let golden: Golden = serde_json::from_str(&text).map_err(|e| {
-        Refusal::about(&path, "S9019", "the golden is damaged", e.to_string(), "make it again with `soifra test --accept`")
+        Refusal::about(
+            &path,
+            "S9019",
+            "the golden is damaged",
+            e.to_string(),
+            "make it again with `soifra test --accept`",
+        )
     })?;
     Ok(golden.difference(now))
 }

@@ -20,7 +20,13 @@ pub fn draw(view: &View) -> String {
         let _ = writeln!(s, "  {} [shape={shape}, label={}];", t.id, quote(&t.lines.join("\n")));
     }
     for a in &view.agents {
-        let _ = writeln!(s, "  subgraph cluster_{} {{\n    label={};\n    {} [shape=point, style=invis];", a.id, quote(&a.title), a.id);
+        let _ = writeln!(
+            s,
+            "  subgraph cluster_{} {{\n    label={};\n    {} [shape=point, style=invis];",
+            a.id,
+            quote(&a.title),
+            a.id
+        );
         for u in &a.units {
             match &u.inside {
                 Inside::Lines(lines) => {

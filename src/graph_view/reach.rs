@@ -48,7 +48,9 @@ impl Reach {
 
     fn plan(&mut self, kind: &PlanKind) {
         match kind {
-            PlanKind::Timeout(e) | PlanKind::Check(e) | PlanKind::Wait(e) | PlanKind::WaitUntil(e) => self.expr(e),
+            PlanKind::Timeout(e) | PlanKind::Check(e) | PlanKind::Wait(e) | PlanKind::WaitUntil(e) => {
+                self.expr(e)
+            }
             PlanKind::Repeat { condition, .. } => condition.iter().for_each(|e| self.expr(e)),
             PlanKind::Act { prelude, body, until, fails, halt } => {
                 self.block(prelude);

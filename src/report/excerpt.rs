@@ -24,7 +24,8 @@ pub fn clean(text: &str) -> String {
 
 fn visible(c: char) -> char {
     // Bidirectional overrides could make a line read as something else than what it says.
-    let harmful = (c.is_control() && c != '\t') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let harmful =
+        (c.is_control() && c != '\t') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     if harmful { '\u{fffd}' } else { c }
 }
 
@@ -57,19 +58,27 @@ impl Excerpt {
 
         let mut wanted: Vec<usize> = Vec::new();
         for m in &marks {
-            wanted.extend(m.first.saturating_sub(AROUND)..=(m.last + AROUND).min(starts.len().saturating_sub(1)));
+            wanted.extend(
+                m.first.saturating_sub(AROUND)..=(m.last + AROUND).min(starts.len().saturating_sub(1)),
+            );
         }
         wanted.sort_unstable();
         wanted.dedup();
 
-        let mut excerpt = Excerpt { path: source.path.clone(), text: String::new(), lines: Vec::new(), columns: Vec::new() };
+        let mut excerpt = Excerpt {
+            path: source.path.clone(),
+            text: String::new(),
+            lines: Vec::new(),
+            columns: Vec::new(),
+        };
         for number in wanted {
             let from = starts[number];
             let to = starts.get(number + 1).copied().unwrap_or(text.len());
             let line = text[from..to].trim_end_matches(['\n', '\r']);
             excerpt.push_line(number, from, line, &mut marks);
         }
-        let spans = marks.iter().map(|m| SourceSpan::new(m.to.0.into(), m.to.1.saturating_sub(m.to.0))).collect();
+        let spans =
+            marks.iter().map(|m| SourceSpan::new(m.to.0.into(), m.to.1.saturating_sub(m.to.0))).collect();
         excerpt.columns = marks.iter().map(|m| (m.to.0, m.column)).collect();
         (excerpt, spans)
     }
@@ -79,7 +88,9 @@ impl Excerpt {
         let chars: Vec<(usize, char)> = line.char_indices().collect();
         let index = |byte: usize| chars.partition_point(|(i, _)| *i < byte);
         let first = marks.iter().find(|m| m.first == number || m.last == number);
-        let pointed = first.map_or(0, |m| index(if m.first == number { m.start - from } else { m.end.saturating_sub(from) }));
+        let pointed = first.map_or(0, |m| {
+            index(if m.first == number { m.start - from } else { m.end.saturating_sub(from) })
+        });
         let (mut low, mut high) = (0, chars.len());
         if chars.len() > LINE {
             low = pointed.saturating_sub(LINE / 4).min(chars.len() - LINE);
@@ -170,7 +181,9 @@ impl SourceCode for Excerpt {
         before: usize,
         after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let at = |offset: usize| self.lines.partition_point(|l| l.end <= offset).min(self.lines.len().saturating_sub(1));
+        let at = |offset: usize| {
+            self.lines.partition_point(|l| l.end <= offset).min(self.lines.len().saturating_sub(1))
+        };
         if self.lines.is_empty() {
             return Err(MietteError::OutOfBounds);
         }

@@ -44,7 +44,13 @@ impl From<Exit> for Refusal {
 
 impl Refusal {
     /// Refuses with one error about a file, or about an argument (then `path` is the argument).
-    pub fn about(path: &str, code: &'static str, title: impl Into<String>, seen: impl Into<String>, hint: &str) -> Self {
+    pub fn about(
+        path: &str,
+        code: &'static str,
+        title: impl Into<String>,
+        seen: impl Into<String>,
+        hint: &str,
+    ) -> Self {
         let diagnostic = Diagnostic::error(code, title).at(Span::default(), seen).hint(hint);
         Refusal::with(diagnostic, Source { path: path.into(), text: String::new() })
     }
@@ -88,7 +94,10 @@ impl Findings {
     /// Every finding as text.
     pub fn render(&self, colour: bool) -> String {
         let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
-        let handler = GraphicalReportHandler::new_themed(theme).with_links(false).with_width(WIDTH).with_context_lines(1);
+        let handler = GraphicalReportHandler::new_themed(theme)
+            .with_links(false)
+            .with_width(WIDTH)
+            .with_context_lines(1);
         let mut out = String::new();
         for (i, d) in self.diagnostics.iter().enumerate() {
             if i < WITH_EXCERPT {
@@ -119,7 +128,11 @@ impl Findings {
             1 => Some(format!("1 {word}")),
             n => Some(format!("{n} {word}s")),
         };
-        [some(self.errors(), "error"), some(self.warnings(), "warning")].into_iter().flatten().collect::<Vec<_>>().join(", ")
+        [some(self.errors(), "error"), some(self.warnings(), "warning")]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 }
 
@@ -218,7 +231,8 @@ struct Report {
 impl Report {
     fn new(d: &Diagnostic, sources: &[Source]) -> Report {
         let file = d.labels.first().map(|l| l.span.file);
-        let (here, elsewhere): (Vec<&Label>, Vec<&Label>) = d.labels.iter().partition(|l| Some(l.span.file) == file);
+        let (here, elsewhere): (Vec<&Label>, Vec<&Label>) =
+            d.labels.iter().partition(|l| Some(l.span.file) == file);
         let mut report = Report {
             head: head(d, sources),
             title: excerpt::clean(&d.title),
@@ -234,7 +248,8 @@ impl Report {
         report.show(&here, sources);
         for label in elsewhere {
             let mut other = Report {
-                head: Place::of(label.span, sources).map_or(String::new(), |p| format!("{}:{}:{}", p.path, p.line, p.column)),
+                head: Place::of(label.span, sources)
+                    .map_or(String::new(), |p| format!("{}:{}:{}", p.path, p.line, p.column)),
                 title: excerpt::clean(&label.text),
                 weight: Weight::Advice,
                 hint: None,
@@ -252,7 +267,8 @@ impl Report {
         let Some(source) = labels.first().and_then(|l| sources.get(l.span.file as usize)) else { return };
         if source.text.is_empty() {
             // Nothing to quote: the words of the labels follow the title.
-            let words: Vec<String> = labels.iter().map(|l| excerpt::clean(&l.text)).filter(|t| !t.is_empty()).collect();
+            let words: Vec<String> =
+                labels.iter().map(|l| excerpt::clean(&l.text)).filter(|t| !t.is_empty()).collect();
             if !words.is_empty() {
                 self.title = format!("{}: {}", self.title, words.join("; "));
             }
@@ -265,7 +281,11 @@ impl Report {
             .enumerate()
             .map(|(i, (l, s))| {
                 let text = Some(excerpt::clean(&l.text)).filter(|t| !t.is_empty());
-                if i == 0 { LabeledSpan::new_primary_with_span(text, s) } else { LabeledSpan::new_with_span(text, s) }
+                if i == 0 {
+                    LabeledSpan::new_primary_with_span(text, s)
+                } else {
+                    LabeledSpan::new_with_span(text, s)
+                }
             })
             .collect();
         self.excerpt = Some(excerpt);
@@ -294,10 +314,12 @@ impl miette::Diagnostic for Report {
         self.excerpt.as_ref().map(|e| e as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        (!self.labels.is_empty()).then(|| Box::new(self.labels.iter().cloned()) as Box<dyn Iterator<Item = LabeledSpan>>)
+        (!self.labels.is_empty())
+            .then(|| Box::new(self.labels.iter().cloned()) as Box<dyn Iterator<Item = LabeledSpan>>)
     }
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn miette::Diagnostic> + 'a>> {
-        (!self.related.is_empty())
-            .then(|| Box::new(self.related.iter().map(|r| r as &dyn miette::Diagnostic)) as Box<dyn Iterator<Item = _>>)
+        (!self.related.is_empty()).then(|| {
+            Box::new(self.related.iter().map(|r| r as &dyn miette::Diagnostic)) as Box<dyn Iterator<Item = _>>
+        })
     }
 }

@@ -39,50 +39,74 @@ pub struct Run {
     /// Its place in the plan.
     pub index: usize,
     #[serde(flatten)]
+    /// Platform and parameters.
     pub case: Case,
+    /// Seed.
     pub seed: u64,
+    /// Outcome.
     pub outcome: String,
+    /// Why, in one line.
     pub reason: String,
+    /// Virtual time at the end.
     pub sim_time_s: Option<f64>,
+    /// Contacts of all robots, each counted once.
     pub collisions: u32,
+    /// Expectations in order.
     pub expectations: Vec<Expectation>,
+    /// Goals in order.
     pub goals: Vec<Goal>,
+    /// Robots in order.
     pub robots: Vec<Robot>,
+    /// Metrics; absent where they cannot be computed.
     pub metrics: BTreeMap<String, Option<f64>>,
 }
 
-/// Brief.
+/// An expectation, brief.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
+    /// As written.
     pub text: String,
+    /// Whether it held.
     pub held: Option<bool>,
+    /// Least distance to the bound.
     pub margin: Option<f64>,
 }
 
-/// Brief.
+/// A goal, brief.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
+    /// Name.
     pub name: String,
+    /// `active`, `achieved` or `failed`.
     pub status: String,
 }
 
-/// Brief.
+/// A robot, brief.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Robot {
+    /// Name.
     pub name: String,
+    /// Profile.
     pub platform: String,
+    /// True path length.
     pub path_length_m: Option<f64>,
+    /// Ticks of the step clock until it had achieved its sub-goals.
     pub steps: Option<u64>,
+    /// Whether it believes so.
     pub reached: bool,
+    /// True distance from its target.
     pub distance_to_target_m: Option<f64>,
+    /// Contacts it took part in.
     pub collisions: u32,
 }
 
 /// Figures of one combination.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Group {
+    /// Platform and parameters.
     #[serde(flatten)]
     pub case: Case,
+    /// Figures by name.
     pub summary: BTreeMap<String, Summary>,
 }
 
@@ -103,7 +127,11 @@ impl Run {
                 .iter()
                 .map(|e| Expectation { text: e.text.clone(), held: e.held, margin: finite(e.margin) })
                 .collect(),
-            goals: r.goals.iter().map(|g| Goal { name: g.name.clone(), status: g.status.to_string() }).collect(),
+            goals: r
+                .goals
+                .iter()
+                .map(|g| Goal { name: g.name.clone(), status: g.status.to_string() })
+                .collect(),
             robots: r
                 .robots
                 .iter()
@@ -178,8 +206,11 @@ impl Document {
     /// What does not go together, in words.
     pub fn merge(shards: Vec<(String, Document)>) -> Result<Document, String> {
         let (first_path, first) = shards.first().ok_or("no file was given")?;
-        let Some((_, count)) = first.shard else { return Err(format!("`{first_path}` is no shard, but a whole sweep")) };
-        let (mission, digests, plan) = (first.mission.clone(), first.graph_digests.clone(), first.plan.clone());
+        let Some((_, count)) = first.shard else {
+            return Err(format!("`{first_path}` is no shard, but a whole sweep"));
+        };
+        let (mission, digests, plan) =
+            (first.mission.clone(), first.graph_digests.clone(), first.plan.clone());
         let mut seen: BTreeMap<usize, String> = BTreeMap::new();
         let mut runs = Vec::new();
         for (path, shard) in shards {
@@ -195,7 +226,9 @@ impl Document {
             if !shard.complete {
                 return Err(format!("`{path}` was interrupted; run its shard again"));
             }
-            let Some((i, n)) = shard.shard else { return Err(format!("`{path}` is no shard, but a whole sweep")) };
+            let Some((i, n)) = shard.shard else {
+                return Err(format!("`{path}` is no shard, but a whole sweep"));
+            };
             if n != count {
                 return Err(format!("`{path}` is one of {n} shards, the first file one of {count}"));
             }

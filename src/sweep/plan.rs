@@ -38,21 +38,24 @@ impl Plan {
             [] => vec![None],
             names => names.iter().cloned().map(Some).collect(),
         };
-        let mut cases: Vec<Case> = platforms.into_iter().map(|platform| Case { platform, set: Vec::new() }).collect();
+        let mut cases: Vec<Case> =
+            platforms.into_iter().map(|platform| Case { platform, set: Vec::new() }).collect();
         for (name, values) in &self.sets {
             let with = |c: &Case, v: &String| {
                 let mut c = c.clone();
                 c.set.push((name.clone(), v.clone()));
                 c
             };
-            cases = cases.iter().flat_map(|c| values.iter().map(|v| with(c, v)).collect::<Vec<_>>()).collect();
+            cases =
+                cases.iter().flat_map(|c| values.iter().map(|v| with(c, v)).collect::<Vec<_>>()).collect();
         }
         cases
     }
 
     /// Number of runs, `None` when it does not fit.
     pub fn runs(&self) -> Option<usize> {
-        let cases = self.sets.iter().try_fold(self.platforms.len().max(1), |n, (_, v)| n.checked_mul(v.len()))?;
+        let cases =
+            self.sets.iter().try_fold(self.platforms.len().max(1), |n, (_, v)| n.checked_mul(v.len()))?;
         cases.checked_mul(self.seeds.len())
     }
 }

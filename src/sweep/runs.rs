@@ -21,7 +21,12 @@ struct Job {
 
 /// Runs `plan`, or the part of it that `shard` names, on `threads` threads. Everything that can be
 /// refused is refused before the first run starts. The second value is the worst run's exit code.
-pub fn execute(file: &str, plan: Plan, shard: Option<(usize, usize)>, threads: usize) -> Result<(Document, Exit), Refusal> {
+pub fn execute(
+    file: &str,
+    plan: Plan,
+    shard: Option<(usize, usize)>,
+    threads: usize,
+) -> Result<(Document, Exit), Refusal> {
     let stop = interrupt::flag();
     let mut missions: BTreeMap<Option<String>, (Mission, String)> = BTreeMap::new();
     let cases = plan.cases();
@@ -61,10 +66,11 @@ pub fn execute(file: &str, plan: Plan, shard: Option<(usize, usize)>, threads: u
             Err(refusal) => Some(Err(refusal)),
         }
     };
-    let results: Vec<_> = match rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(16 << 20).build() {
-        Ok(pool) => pool.install(|| jobs.par_iter().map(one).collect()),
-        Err(_) => jobs.iter().map(one).collect(),
-    };
+    let results: Vec<_> =
+        match rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(16 << 20).build() {
+            Ok(pool) => pool.install(|| jobs.par_iter().map(one).collect()),
+            Err(_) => jobs.iter().map(one).collect(),
+        };
     bar.finish_and_clear();
 
     let complete = results.iter().all(Option::is_some);
@@ -96,8 +102,11 @@ fn one_run(
 
 /// A bar on standard error, when that is a terminal.
 fn progress(length: usize) -> ProgressBar {
-    let target =
-        if std::io::stderr().is_terminal() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let target = if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
     let bar = ProgressBar::with_draw_target(Some(length as u64), target);
     match ProgressStyle::with_template("  {bar:40} {pos}/{len} runs, {eta} left") {
         Ok(style) => bar.with_style(style),

@@ -44,7 +44,8 @@ fn garbage_nesting_and_long_names() {
     };
     let garbage: Vec<u8> = (0..10_000_000).map(|i| if i % 80 == 79 { b'\n' } else { byte() }).collect();
     let one_line: Vec<u8> = garbage.iter().map(|b| if *b == b'\n' { b'x' } else { *b }).collect();
-    let deep = format!("edition 1\nfn f(x: Number) -> Number = {}x{}\n", "(".repeat(100_000), ")".repeat(100_000));
+    let deep =
+        format!("edition 1\nfn f(x: Number) -> Number = {}x{}\n", "(".repeat(100_000), ")".repeat(100_000));
     let name = format!("edition 1\nmission {} {{ }}\n", "n".repeat(300));
     let overflow = MISSION.replace("0.5 m/s", "1e999 m/s");
     let cases = [
@@ -107,7 +108,8 @@ fn a_trace_that_cannot_be_written() {
 
 #[test]
 fn a_reader_that_goes_away() {
-    let mut child = command(&["explain", "--all"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child =
+        command(&["explain", "--all"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stdout.take());
     let o = child.wait_with_output().unwrap();
     assert_eq!((code(&o), stderr(&o).as_str()), (0, ""));
@@ -117,10 +119,15 @@ fn a_reader_that_goes_away() {
 #[test]
 fn an_interrupt_keeps_the_trace() {
     let dir = folder("interrupt");
-    let endless = MISSION.replace("within 30 s", "within 3000000 s").replace("set arrived = true", "note \"there\"");
+    let endless =
+        MISSION.replace("within 30 s", "within 3000000 s").replace("set arrived = true", "note \"there\"");
     let path = file(&dir, "endless.soi", endless);
     let trace = dir.join("t.mcap").to_string_lossy().into_owned();
-    let child = command(&["run", &path, "--trace", &trace]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let child = command(&["run", &path, "--trace", &trace])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     // Until it has recorded something.
     for _ in 0..400 {
         if std::fs::metadata(&trace).is_ok_and(|m| m.len() > 20_000) {

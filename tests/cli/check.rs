@@ -68,7 +68,9 @@ fn completions_and_help() {
         assert_eq!(code(&o), 0);
         assert!(stdout(&o).contains("soifra"));
     }
-    for command in ["check", "run", "sweep", "graph", "fmt", "test", "plot", "replay", "explain", "completions"] {
+    for command in
+        ["check", "run", "sweep", "graph", "fmt", "test", "plot", "replay", "explain", "completions"]
+    {
         assert_eq!(code(&soifra(&[command, "--help"])), 0);
     }
     assert_eq!(code(&soifra(&["--version"])), 0);

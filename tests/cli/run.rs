@@ -25,7 +25,12 @@ fn the_document_has_what_is_promised() {
     assert!(d["sim_time_s"].as_f64().is_some_and(|t| t > 1.0));
     assert_eq!(d["collisions"], 0);
     let e = &d["expectations"][0];
-    assert!(e["text"].is_string() && e["held"] == true && e["first_violation_s"].is_null() && e.get("margin").is_some());
+    assert!(
+        e["text"].is_string()
+            && e["held"] == true
+            && e["first_violation_s"].is_null()
+            && e.get("margin").is_some()
+    );
     assert_eq!(d["goals"][0]["name"], "deliver");
     assert_eq!(d["goals"][0]["status"], "achieved");
     let r = &d["robots"][0];

@@ -69,7 +69,9 @@ fn check() {
 #[test]
 fn nesting_is_bounded() {
     with_stack(|| {
-        for open in ["(", "[", "{", "-", "not ", "if true then ", "mission m { ", "List<", "a.b(", "sequence { "] {
+        for open in
+            ["(", "[", "{", "-", "not ", "if true then ", "mission m { ", "List<", "a.b(", "sequence { "]
+        {
             let text = format!("edition 1\nfn f(x: Number) -> Number = {}", open.repeat(100_000));
             fuzz_parse(text.as_bytes());
             fuzz_check(text.as_bytes());
@@ -80,7 +82,12 @@ fn nesting_is_bounded() {
 #[test]
 fn graph() {
     with_stack(|| {
-        let mut seeds: Vec<Vec<u8>> = vec![b"schema: 1\n".to_vec(), b"{\"schema\":1}".to_vec(), b"[".repeat(200_000), b"a: &a [*a, *a]".to_vec()];
+        let mut seeds: Vec<Vec<u8>> = vec![
+            b"schema: 1\n".to_vec(),
+            b"{\"schema\":1}".to_vec(),
+            b"[".repeat(200_000),
+            b"a: &a [*a, *a]".to_vec(),
+        ];
         if let Some(graph) = crate::cli::small_graph() {
             seeds.push(graph);
         }

@@ -40,7 +40,8 @@ pub fn stdout(o: &Output) -> String {
 
 /// Standard output as exactly one JSON document.
 pub fn json(o: &Output) -> Value {
-    serde_json::from_slice(&o.stdout).unwrap_or_else(|e| panic!("{e}\nstdout: {}\nstderr: {}", stdout(o), stderr(o)))
+    serde_json::from_slice(&o.stdout)
+        .unwrap_or_else(|e| panic!("{e}\nstdout: {}\nstderr: {}", stdout(o), stderr(o)))
 }
 
 /// An empty folder for a test, by name.
