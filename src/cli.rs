@@ -32,6 +32,8 @@ enum Command {
     Fmt(commands::fmt::Arguments),
     /// Run the tests and goldens of missions
     Test(commands::test::Arguments),
+    /// Run the studies of a file and write their tables
+    Measure(commands::measure::Arguments),
     /// Draw the top view of a trace
     Plot(commands::plot::Arguments),
     /// Execute a trace again and verify that nothing differs
@@ -72,6 +74,7 @@ pub fn run(arguments: Vec<OsString>) -> Exit {
         Command::Graph(a) => (commands::graph::run(&a), a.document()),
         Command::Fmt(a) => (commands::fmt::run(&a), Format::Human),
         Command::Test(a) => (commands::test::run(&a), a.format),
+        Command::Measure(a) => (commands::measure::run(&a), Format::Human),
         Command::Plot(a) => (commands::plot::run(&a), Format::Human),
         Command::Replay(a) => (commands::replay::run(&a), a.format),
         Command::Explain(a) => (commands::explain::run(&a), Format::Human),
@@ -110,8 +113,12 @@ fn usage(e: &clap::Error, json: bool) -> Exit {
         return Exit::WrongInput;
     }
     let text = e.render().to_string();
-    let title = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_string();
-    refuse(&Refusal::about("command line", "S9024", title, "", "`soifra --help` lists what there is"), Format::Json)
+    let first: Vec<&str> = text.lines().map(str::trim).take_while(|l| !l.is_empty()).collect();
+    let title = first.join(" ").trim_start_matches("error: ").to_string();
+    refuse(
+        &Refusal::about("command line", "S9024", title, "", "`soifra --help` lists what there is"),
+        Format::Json,
+    )
 }
 
 /// Whether JSON was asked for, as far as can be told from a command line that may be wrong.

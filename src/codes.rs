@@ -17,40 +17,151 @@ const fn page(code: &'static str, title: &'static str, text: &'static str) -> Pa
 
 /// Every page of the command line, by code.
 pub const PAGES: &[Page] = &[
-    page("S9001", "The file cannot be read", "There is no such file, or it may not be opened. Paths are taken from the current folder; the report names the nearest file name in the same folder."),
-    page("S9002", "A file is needed here", "The path names a directory. Commands that take several files take them one by one: `soifra check missions/*.soi`."),
-    page("S9003", "The file is not UTF-8 text", "Missions and graphs are UTF-8. The report shows the first byte that belongs to no character. Save the file as UTF-8; `iconv -f latin1 -t utf-8 OLD > NEW` converts an old one."),
-    page("S9004", "The file is too large", "soifra reads files up to 256 MB. Larger ones are most likely not what was meant."),
-    page("S9005", "The graph file cannot be read", "The YAML or JSON of a graph file is cut off or not well formed; the report shows where. Brackets may nest 2048 deep in JSON and 128 deep in YAML: a graph that nests deeper than YAML allows can be written as JSON."),
-    page("S9006", "This is no behaviour graph", "The file is YAML or JSON, but not a graph: it lacks the `schema` number. `soifra graph MISSION --format yaml` makes a graph file."),
-    page("S9007", "The graph has another schema version", "Graph files carry the version of their form. A reader refuses others instead of guessing. Make the graph again from its source."),
-    page("S9008", "The graph is damaged", "Something in the graph file has the wrong form; the report gives the path to it, as `agents[0].units[2].trigger`."),
-    page("S9009", "A graph file is bound to its platforms", "`--platform` chooses profiles while a source is compiled. In a graph file they are chosen already. Run the source, or make a graph with `soifra graph MISSION --platform NAME`."),
-    page("S9010", "Unknown parameter", "`--set` names a parameter that the mission does not have. The report lists the nearest name, or all of them."),
-    page("S9011", "The value does not fit the parameter", "`--set name=value` takes a value of the parameter's type, with its unit and without spaces around `=`: `--set speed=0.3m/s`, `--set mode=careful`, `--set avoidance=off`."),
-    page("S9012", "The file cannot be written", "Output is refused before anything starts when its file cannot be made: a folder that is not writable, a directory of that name, a full disk. `--trace none` runs without a trace."),
-    page("S9013", "Standard output cannot be written", "The result could not be written, for instance because the disk is full. A reader that goes away (`| head`) is no error."),
-    page("S9014", "The system gives no thread", "soifra compiles and runs on a thread with a large stack of its own. The system refused it: memory or thread limits (`ulimit -v`, `ulimit -u`) are too low."),
-    page("S9015", "A list of seeds or a shard is wrong", "Seeds are given as `20` (1 to 20), `5..9` or `1..20,42`; a shard as `i/n` with i from 1 to n."),
-    page("S9016", "These sweep results do not go together", "`soifra sweep merge` takes the JSON of all shards of one sweep: the same mission, graph, parameters and number of shards, each shard once."),
-    page("S9017", "The trace stopped being writable", "The run was aborted because its trace could not be written any more, for instance because the disk is full. What was recorded until then is kept and opens."),
-    page("S9018", "The trace cannot be read", "The file is no soifra trace, or is damaged so far that nothing can be told from it. A trace that was cut off opens with all but its last chunk."),
-    page("S9019", "The run differs from its golden", "`soifra test` compares a run with what was accepted before: events in order exactly, figures within 1e-6. When the change is meant, accept it with `soifra test --accept`."),
-    page("S9020", "The mission cannot be set up", "An expression of the scene could not be evaluated for these parameters and this seed, or the platform cannot be built from it."),
-    page("S9021", "Nothing to test", "No mission among the files has a `test` block or a golden. Write a `test`, or make a golden with `soifra test --accept`."),
-    page("S9022", "A test failed", "An expectation of a `test` block did not hold. The report names the test, the seed and the first instant at which it was violated; `soifra run` with that seed records the trace."),
-    page("S9023", "The replay differs", "The trace was re-executed on its recorded inputs and something came out differently. The report names the first record that differs."),
-    page("S9024", "The command line is wrong", "An option, argument or command that soifra does not have, or one that is missing. `soifra --help` and `soifra COMMAND --help` list what there is."),
-    page("S9025", "No diagnostic has this code", "Codes are an S and four digits, as in the brackets of a report. `soifra explain` lists all."),
-    page("S9999", "A defect of soifra", "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files."),
+    page(
+        "S9001",
+        "The file cannot be read",
+        "There is no such file, or it may not be opened. Paths are taken from the current folder; the report names the nearest file name in the same folder.",
+    ),
+    page(
+        "S9002",
+        "A file is needed here",
+        "The path names a directory. Commands that take several files take them one by one: `soifra check missions/*.soi`.",
+    ),
+    page(
+        "S9003",
+        "The file is not UTF-8 text",
+        "Missions and graphs are UTF-8. The report shows the first byte that belongs to no character. Save the file as UTF-8; `iconv -f latin1 -t utf-8 OLD > NEW` converts an old one.",
+    ),
+    page(
+        "S9004",
+        "The file is too large",
+        "soifra reads files up to 256 MB. Larger ones are most likely not what was meant.",
+    ),
+    page(
+        "S9005",
+        "The graph file cannot be read",
+        "The YAML or JSON of a graph file is cut off or not well formed; the report shows where. Brackets may nest 2048 deep in JSON and 128 deep in YAML: a graph that nests deeper than YAML allows can be written as JSON.",
+    ),
+    page(
+        "S9006",
+        "This is no behaviour graph",
+        "The file is YAML or JSON, but not a graph: it lacks the `schema` number. `soifra graph MISSION --format yaml` makes a graph file.",
+    ),
+    page(
+        "S9007",
+        "The graph has another schema version",
+        "Graph files carry the version of their form. A reader refuses others instead of guessing. Make the graph again from its source.",
+    ),
+    page(
+        "S9008",
+        "The graph is damaged",
+        "Something in the graph file has the wrong form; the report gives the path to it, as `agents[0].units[2].trigger`.",
+    ),
+    page(
+        "S9009",
+        "A graph file is bound to its platforms",
+        "`--platform` chooses profiles while a source is compiled. In a graph file they are chosen already. Run the source, or make a graph with `soifra graph MISSION --platform NAME`.",
+    ),
+    page(
+        "S9010",
+        "Unknown parameter",
+        "`--set` names a parameter that the mission does not have. The report lists the nearest name, or all of them.",
+    ),
+    page(
+        "S9011",
+        "The value does not fit the parameter",
+        "`--set name=value` takes a value of the parameter's type, with its unit and without spaces around `=`: `--set speed=0.3m/s`, `--set mode=careful`, `--set avoidance=off`.",
+    ),
+    page(
+        "S9012",
+        "The file cannot be written",
+        "Output is refused before anything starts when its file cannot be made: a folder that is not writable, a directory of that name, a full disk. `--trace none` runs without a trace.",
+    ),
+    page(
+        "S9013",
+        "Standard output cannot be written",
+        "The result could not be written, for instance because the disk is full. A reader that goes away (`| head`) is no error.",
+    ),
+    page(
+        "S9014",
+        "The system gives no thread",
+        "soifra compiles and runs on a thread with a large stack of its own. The system refused it: memory or thread limits (`ulimit -v`, `ulimit -u`) are too low.",
+    ),
+    page(
+        "S9015",
+        "A list of seeds or a shard is wrong",
+        "Seeds are given as `20` (1 to 20), `5..9` or `1..20,42`; a shard as `i/n` with i from 1 to n.",
+    ),
+    page(
+        "S9016",
+        "These sweep results do not go together",
+        "`soifra sweep merge` takes the JSON of all shards of one sweep: the same mission, graph, parameters and number of shards, each shard once.",
+    ),
+    page(
+        "S9017",
+        "The trace stopped being writable",
+        "The run was aborted because its trace could not be written any more, for instance because the disk is full. What was recorded until then is kept and opens.",
+    ),
+    page(
+        "S9018",
+        "The trace cannot be read",
+        "The file is no soifra trace, or is damaged so far that nothing can be told from it. A trace that was cut off opens with all but its last chunk.",
+    ),
+    page(
+        "S9019",
+        "The run differs from its golden",
+        "`soifra test` compares a run with what was accepted before: events in order exactly, figures within 1e-6. When the change is meant, accept it with `soifra test --accept`.",
+    ),
+    page(
+        "S9020",
+        "The mission cannot be set up",
+        "An expression of the scene could not be evaluated for these parameters and this seed, or the platform cannot be built from it.",
+    ),
+    page(
+        "S9021",
+        "Nothing to test",
+        "No mission among the files has a `test` block or a golden. Write a `test`, or make a golden with `soifra test --accept`.",
+    ),
+    page(
+        "S9022",
+        "A test failed",
+        "An expectation of a `test` block did not hold. The report names the test, the seed and the first instant at which it was violated; `soifra run` with that seed records the trace.",
+    ),
+    page(
+        "S9023",
+        "The replay differs",
+        "The trace was re-executed on its recorded inputs and something came out differently. The report names the first record that differs.",
+    ),
+    page(
+        "S9024",
+        "The command line is wrong",
+        "An option, argument or command that soifra does not have, or one that is missing. `soifra --help` and `soifra COMMAND --help` list what there is.",
+    ),
+    page(
+        "S9025",
+        "No diagnostic has this code",
+        "Codes are an S and four digits, as in the brackets of a report. `soifra explain` lists all.",
+    ),
+    page(
+        "S9026",
+        "The file does not have the form that is wanted",
+        "A file of studies for `soifra measure` is a YAML list; the report gives the path to what is wrong in it. Fields of a study: `name`, `title`, `mission`, `seeds`, `sample`, `set`, `platforms`, `text`, `bars`. Fields of a bar: `metric`, `label`, `published`, `scale`, `of` (`mean`, `median`, `min`, `max`), `at_most`, `at_least`, `full_only`.",
+    ),
+    page(
+        "S9999",
+        "A defect of soifra",
+        "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files.",
+    ),
 ];
 
 /// The page of a code, of the command line or of the language.
 pub fn find(code: &str) -> Option<Page> {
     let code = code.trim().to_ascii_uppercase();
-    PAGES.iter().find(|p| p.code == code).copied().or_else(|| {
-        soifra_lang::explain(&code).map(|e| page(e.code, e.title, e.text))
-    })
+    PAGES
+        .iter()
+        .find(|p| p.code == code)
+        .copied()
+        .or_else(|| soifra_lang::explain(&code).map(|e| page(e.code, e.title, e.text)))
 }
 
 /// Every page, by code.

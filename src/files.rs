@@ -22,7 +22,10 @@ pub fn read_text(path: &str) -> Result<String, Refusal> {
         let end = (at + 4096).min(e.as_bytes().len());
         let text = String::from_utf8_lossy(&e.as_bytes()[..end]).into_owned();
         let diagnostic = Diagnostic::error("S9003", "the file is not UTF-8 text")
-            .at(Span::new(0, at, at + '\u{fffd}'.len_utf8()), format!("byte {bad:#04x} at offset {at} belongs to no character"))
+            .at(
+                Span::new(0, at, at + '\u{fffd}'.len_utf8()),
+                format!("byte {bad:#04x} at offset {at} belongs to no character"),
+            )
             .hint("save the file as UTF-8; missions and graphs are text files");
         Refusal::with(diagnostic, Source { path: path.into(), text })
     })
@@ -35,7 +38,13 @@ pub fn read_bytes(path: &str) -> Result<Vec<u8>, Refusal> {
             Refusal::about(path, "S9001", "the file cannot be read", "there is no such file", &near(path))
         }
         ErrorKind::IsADirectory => directory(path),
-        _ => Refusal::about(path, "S9001", "the file cannot be read", reason(&e), "make it readable, or name another file"),
+        _ => Refusal::about(
+            path,
+            "S9001",
+            "the file cannot be read",
+            reason(&e),
+            "make it readable, or name another file",
+        ),
     };
     let meta = fs::metadata(path).map_err(wrong)?;
     if meta.is_dir() {
@@ -94,14 +103,25 @@ pub fn write(path: &str, bytes: &[u8]) -> Result<(), Refusal> {
 /// Makes the folder of a file to be written.
 pub fn make_folder(path: &str) -> std::io::Result<()> {
     match Path::new(path).parent() {
-        Some(f) if !f.as_os_str().is_empty() => fs::create_dir_all(f),
+        Some(f) if !f.as_os_str().is_empty() => fs::create_dir_all(f).map_err(|e| match e.kind() {
+            ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+                std::io::Error::new(e.kind(), "part of its path is a file, not a folder")
+            }
+            _ => e,
+        }),
         _ => Ok(()),
     }
 }
 
 /// The refusal for a file that cannot be written.
 pub fn unwritable(path: &str, e: &std::io::Error) -> Refusal {
-    Refusal::about(path, "S9012", "the file cannot be written", reason(e), "name another path, or make this one writable")
+    Refusal::about(
+        path,
+        "S9012",
+        "the file cannot be written",
+        reason(e),
+        "name another path, or make this one writable",
+    )
 }
 
 /// Loads imports from the file system, and knows the embedded library.

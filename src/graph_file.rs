@@ -11,6 +11,20 @@ use soifra_graph::{Diagnostic, Graph, SCHEMA, Span, span::Source};
 /// Deepest nesting of brackets in a graph file.
 const DEPTH: usize = 2048;
 
+/// Reads any other YAML file of ours.
+pub fn from_yaml<T: serde::de::DeserializeOwned>(path: &str, text: &str) -> Result<T, Refusal> {
+    serde_path_to_error::deserialize(yaml_value(path, text)?).map_err(|e| {
+        let seen = format!("at `{}`: {}", e.path(), e.inner());
+        Refusal::about(
+            path,
+            "S9026",
+            "the file does not have the form that is wanted",
+            seen,
+            "see docs/results.md for the form",
+        )
+    })
+}
+
 /// Whether a path names a graph file: by its ending.
 pub fn is_graph(path: &str) -> bool {
     let lower = path.to_ascii_lowercase();
@@ -56,9 +70,15 @@ pub fn parse(path: &str, text: &str) -> Result<Graph, Refusal> {
 }
 
 fn from_value(path: &str, value: Value) -> Result<Graph, Refusal> {
-    let refuse = |code, title: &str, seen: String, hint: &str| Err(Refusal::about(path, code, title, seen, hint));
+    let refuse =
+        |code, title: &str, seen: String, hint: &str| Err(Refusal::about(path, code, title, seen, hint));
     let Value::Object(fields) = &value else {
-        return refuse("S9006", "this is no behaviour graph", kind(&value).into(), "make a graph file with `soifra graph MISSION --format yaml`");
+        return refuse(
+            "S9006",
+            "this is no behaviour graph",
+            kind(&value).into(),
+            "make a graph file with `soifra graph MISSION --format yaml`",
+        );
     };
     match fields.get("schema").and_then(Value::as_u64) {
         Some(v) if v == u64::from(SCHEMA) => {}
@@ -82,7 +102,12 @@ fn from_value(path: &str, value: Value) -> Result<Graph, Refusal> {
     serde_path_to_error::deserialize::<_, Graph>(value).or_else(|e| {
         let place = e.path().to_string();
         let seen = if place == "." { e.inner().to_string() } else { format!("at `{place}`: {}", e.inner()) };
-        refuse("S9008", "the graph is damaged", seen, "make the graph again from its source; edit it only with care")
+        refuse(
+            "S9008",
+            "the graph is damaged",
+            seen,
+            "make the graph again from its source; edit it only with care",
+        )
     })
 }
 
@@ -97,7 +122,12 @@ fn kind(v: &Value) -> &'static str {
 
 fn json_value(path: &str, text: &str) -> Result<Value, Refusal> {
     if let Some(at) = too_deep(text) {
-        return Err(syntax(path, text, Span::new(0, at, at + 1), format!("brackets nest deeper than {DEPTH} here")));
+        return Err(syntax(
+            path,
+            text,
+            Span::new(0, at, at + 1),
+            format!("brackets nest deeper than {DEPTH} here"),
+        ));
     }
     let mut reader = serde_json::Deserializer::from_str(text);
     // The depth was bounded above, and commands run on a large stack.

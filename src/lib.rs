@@ -1,6 +1,7 @@
 //! The shell around the language and the runtime: reads arguments, opens files, draws on the terminal.
 //! Everything below it is pure or talks through traits.
 
+pub mod bars;
 pub mod cli;
 pub mod codes;
 pub mod commands;

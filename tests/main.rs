@@ -1,7 +1,10 @@
 //! The integration tests, one binary: `tests/<area>/` are its modules.
 
+mod bars;
 mod cli;
+mod corpus;
 mod fuzz;
+mod missions;
 mod structure;
 mod support;
 mod trace;

@@ -55,6 +55,8 @@ impl Program {
 
     fn add(&mut self, path: &str, text: String, own: bool) -> usize {
         let file = self.modules.len();
+        // Some editors begin a file with a mark of its encoding.
+        let text = text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text);
         let (tree, errors) = parse::parse(file as u32, &text);
         self.errors.extend(errors);
         if let Some((edition, span)) = tree.edition {

@@ -2,7 +2,6 @@
 
 use crate::{codes, exit::Exit, output, report::Refusal};
 use clap::Args;
-use soifra_graph::did_you_mean;
 use std::fmt::Write;
 
 /// Arguments.
@@ -37,8 +36,6 @@ fn render(page: &codes::Page) -> String {
 }
 
 fn unknown(code: &str) -> Refusal {
-    let all = codes::all();
-    let near = did_you_mean(code, all.iter().map(|p| p.code));
-    let hint = near.map_or("`soifra explain` lists all codes".to_string(), |n| format!("did you mean {n}?"));
-    Refusal::about(code, "S9025", "no diagnostic has this code", "codes are an S and four digits", &hint)
+    let hint = "`soifra explain` lists all codes";
+    Refusal::about(code, "S9025", "no diagnostic has this code", "codes are an S and four digits", hint)
 }

@@ -5,6 +5,7 @@ pub mod completions;
 pub mod explain;
 pub mod fmt;
 pub mod graph;
+pub mod measure;
 pub mod plot;
 pub mod replay;
 pub mod run;

@@ -39,12 +39,46 @@ const COLUMN: f64 = 46.0;
 /// Height reserved for an edge that passes through a layer.
 const LANE: f64 = 14.0;
 
+/// Heights at which labelled edges leave and arrive, one of its own for each on its side of a box, so
+/// that their labels stand below each other; and the height each box needs for them.
+pub fn slots(heights: &[f64], edges: &[(usize, usize, bool)]) -> (Vec<f64>, Vec<(f64, f64)>) {
+    let pairs: Vec<(usize, usize)> = edges.iter().map(|(a, b, _)| (*a, *b)).collect();
+    let reversed = back_edges(heights.len(), &pairs);
+    // Ends by box and side: left (0) takes what comes forth, right (1) what goes forth.
+    let mut taken = vec![[0usize; 2]; heights.len()];
+    let mut ends = vec![(None, None); edges.len()];
+    for (i, (a, b, labelled)) in edges.iter().enumerate().filter(|(_, (a, b, _))| a != b) {
+        if *labelled {
+            let (out, into) = if reversed[i] { (0, 1) } else { (1, 0) };
+            ends[i] = (Some(taken[*a][out]), Some(taken[*b][into]));
+            taken[*a][out] += 1;
+            taken[*b][into] += 1;
+        }
+    }
+    let needed: Vec<f64> =
+        heights.iter().zip(&taken).map(|(h, t)| h.max(SLOT * t[0].max(t[1]) as f64 + 10.0)).collect();
+    let at = |node: usize, side: usize, slot: Option<usize>| match slot {
+        None => needed[node] / 2.0,
+        Some(k) => needed[node] / 2.0 + SLOT * (k as f64 - (taken[node][side] as f64 - 1.0) / 2.0),
+    };
+    let places = (0..edges.len())
+        .map(|i| {
+            let (out, into) = if reversed[i] { (0, 1) } else { (1, 0) };
+            (at(edges[i].0, out, ends[i].0), at(edges[i].1, into, ends[i].1))
+        })
+        .collect();
+    (needed, places)
+}
+
+/// Height of a labelled edge's end.
+const SLOT: f64 = 15.0;
+
 /// Places boxes and routes edges.
 pub fn place(sizes: &[Size], edges: &[Edge]) -> Placed {
     if sizes.is_empty() {
         return Placed::default();
     }
-    let reversed = back_edges(sizes.len(), edges);
+    let reversed = back_edges(sizes.len(), &edges.iter().map(|e| (e.from, e.to)).collect::<Vec<_>>());
     let layer = layers(sizes.len(), edges, &reversed);
     let mut net = Net::new(sizes, edges, &reversed, &layer);
     net.order();
@@ -53,10 +87,10 @@ pub fn place(sizes: &[Size], edges: &[Edge]) -> Placed {
 }
 
 /// Edges that close a cycle in a depth-first walk from the first box on.
-fn back_edges(n: usize, edges: &[Edge]) -> Vec<bool> {
+fn back_edges(n: usize, edges: &[(usize, usize)]) -> Vec<bool> {
     let mut out: Vec<Vec<usize>> = vec![Vec::new(); n];
-    for (i, e) in edges.iter().enumerate() {
-        out[e.from].push(i);
+    for (i, (from, _)) in edges.iter().enumerate() {
+        out[*from].push(i);
     }
     // 0 new, 1 on the path, 2 done
     let (mut state, mut reversed) = (vec![0u8; n], vec![false; edges.len()]);
@@ -70,7 +104,7 @@ fn back_edges(n: usize, edges: &[Edge]) -> Vec<bool> {
             match out[v].get(next) {
                 Some(&e) => {
                     path.push((v, next + 1));
-                    let w = edges[e].to;
+                    let w = edges[e].1;
                     match state[w] {
                         0 => {
                             state[w] = 1;
@@ -89,7 +123,8 @@ fn back_edges(n: usize, edges: &[Edge]) -> Vec<bool> {
 
 /// Longest path from the sources; then sources move right up to their first successor.
 fn layers(n: usize, edges: &[Edge], reversed: &[bool]) -> Vec<usize> {
-    let ends = |i: usize| if reversed[i] { (edges[i].to, edges[i].from) } else { (edges[i].from, edges[i].to) };
+    let ends =
+        |i: usize| if reversed[i] { (edges[i].to, edges[i].from) } else { (edges[i].from, edges[i].to) };
     let mut layer = vec![0; n];
     // At most n rounds: without cycles the longest path has n - 1 edges.
     for _ in 0..n {
@@ -107,7 +142,8 @@ fn layers(n: usize, edges: &[Edge], reversed: &[bool]) -> Vec<usize> {
     }
     for v in 0..n {
         let has_input = (0..edges.len()).any(|i| ends(i).1 == v && ends(i).0 != v);
-        let first = (0..edges.len()).filter(|i| ends(*i).0 == v && ends(*i).1 != v).map(|i| layer[ends(i).1]).min();
+        let first =
+            (0..edges.len()).filter(|i| ends(*i).0 == v && ends(*i).1 != v).map(|i| layer[ends(i).1]).min();
         if let (false, Some(l)) = (has_input, first) {
             layer[v] = l - 1;
         }
@@ -145,7 +181,8 @@ impl Net {
             gaps: vec![COLUMN; count],
         };
         for (i, e) in edges.iter().enumerate() {
-            let (a, b, ay, by) = if reversed[i] { (e.to, e.from, e.to_y, e.from_y) } else { (e.from, e.to, e.from_y, e.to_y) };
+            let (a, b, ay, by) =
+                if reversed[i] { (e.to, e.from, e.to_y, e.from_y) } else { (e.from, e.to, e.from_y, e.to_y) };
             let mut chain = vec![a];
             if a != b {
                 let (mut last, mut last_y) = (a, ay);
@@ -232,7 +269,10 @@ impl Net {
                     .iter()
                     .map(|v| match near[*v].len() {
                         0 => self.y[*v],
-                        k => near[*v].iter().map(|(u, own, other)| self.y[*u] + other - own).sum::<f64>() / k as f64,
+                        k => {
+                            near[*v].iter().map(|(u, own, other)| self.y[*u] + other - own).sum::<f64>()
+                                / k as f64
+                        }
                     })
                     .collect();
                 self.settle(row, &wish);
@@ -279,13 +319,15 @@ impl Net {
             x += w + gap;
         }
         let w = x - self.gaps.last().copied().unwrap_or(0.0);
-        let corner = |v: usize| (left[self.layer[v]] + (widths[self.layer[v]] - self.width[v]) / 2.0, self.y[v]);
+        let corner =
+            |v: usize| (left[self.layer[v]] + (widths[self.layer[v]] - self.width[v]) / 2.0, self.y[v]);
         let mut routes = Vec::new();
         for (i, e) in edges.iter().enumerate() {
             let chain = &self.chains[i];
             let mut points = Vec::new();
             if e.from != e.to {
-                let (ends_y, last) = (if reversed[i] { (e.to_y, e.from_y) } else { (e.from_y, e.to_y) }, chain.len() - 1);
+                let (ends_y, last) =
+                    (if reversed[i] { (e.to_y, e.from_y) } else { (e.from_y, e.to_y) }, chain.len() - 1);
                 let (ax, ay) = corner(chain[0]);
                 points.push((ax + self.width[chain[0]], ay + ends_y.0));
                 for v in &chain[1..last] {
@@ -313,15 +355,22 @@ mod tests {
 
     #[test]
     fn boxes_of_a_cyclic_graph_do_not_overlap() {
-        let sizes: Vec<Size> = (0..9).map(|i| Size { w: 40.0 + i as f64, h: 20.0 + 3.0 * i as f64 }).collect();
-        let pairs = [(0, 1), (1, 2), (2, 0), (0, 3), (3, 4), (0, 4), (4, 4), (5, 4), (6, 4), (7, 8), (8, 0), (2, 8)];
-        let edges: Vec<Edge> =
-            pairs.iter().map(|(a, b)| Edge { from: *a, to: *b, from_y: 10.0, to_y: 10.0, label_w: 0.0 }).collect();
+        let sizes: Vec<Size> =
+            (0..9).map(|i| Size { w: 40.0 + i as f64, h: 20.0 + 3.0 * i as f64 }).collect();
+        let pairs =
+            [(0, 1), (1, 2), (2, 0), (0, 3), (3, 4), (0, 4), (4, 4), (5, 4), (6, 4), (7, 8), (8, 0), (2, 8)];
+        let edges: Vec<Edge> = pairs
+            .iter()
+            .map(|(a, b)| Edge { from: *a, to: *b, from_y: 10.0, to_y: 10.0, label_w: 0.0 })
+            .collect();
         let p = place(&sizes, &edges);
         for i in 0..sizes.len() {
             for j in 0..i {
                 let ((ax, ay), (bx, by)) = (p.boxes[i], p.boxes[j]);
-                let apart = ax + sizes[i].w <= bx || bx + sizes[j].w <= ax || ay + sizes[i].h <= by || by + sizes[j].h <= ay;
+                let apart = ax + sizes[i].w <= bx
+                    || bx + sizes[j].w <= ax
+                    || ay + sizes[i].h <= by
+                    || by + sizes[j].h <= ay;
                 assert!(apart, "{i} and {j} overlap: {p:?}");
             }
         }

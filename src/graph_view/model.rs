@@ -1,7 +1,9 @@
 //! What a picture shows, without a form: things, units with their insides, and who is linked to whom.
 
 use super::reach::{self, Reach};
-use soifra_graph::{Agent, Conjunct, Graph, MachineState, PlanKind, PlanNode, Span, Strategy, Trigger, Unit, UnitKind};
+use soifra_graph::{
+    Agent, Conjunct, Expr, Graph, MachineState, PlanKind, PlanNode, Span, Strategy, Trigger, Unit, UnitKind,
+};
 use std::collections::BTreeMap;
 
 /// Longest text of a guard or condition, in characters.
@@ -75,7 +77,11 @@ impl View {
         b.goals();
         b.links.sort();
         b.links.dedup();
-        let title = if graph.title.is_empty() { graph.name.to_string() } else { format!("{} – {}", graph.name, graph.title) };
+        let title = if graph.title.is_empty() {
+            graph.name.to_string()
+        } else {
+            format!("{} – {}", graph.name, graph.title)
+        };
         View { title, things: b.things.into_values().collect(), agents, links: b.links }
     }
 }
@@ -90,7 +96,11 @@ impl Builder<'_> {
     /// The id of a thing, made when it is new.
     fn thing(&mut self, kind: Kind, name: &str, lines: Vec<String>) -> String {
         let n = self.things.len();
-        let thing = self.things.entry((kind, name.to_string())).or_insert_with(|| Thing { id: format!("t{n}"), kind, lines });
+        let thing = self.things.entry((kind, name.to_string())).or_insert_with(|| Thing {
+            id: format!("t{n}"),
+            kind,
+            lines,
+        });
         thing.id.clone()
     }
 
@@ -111,7 +121,8 @@ impl Builder<'_> {
             1..=4 => format!(" on {}", robots.join(", ")),
             n => format!(" on {n} robots"),
         };
-        let units: Vec<UnitBox> = agent.units.iter().enumerate().map(|(j, u)| self.unit(i, j, agent, u)).collect();
+        let units: Vec<UnitBox> =
+            agent.units.iter().enumerate().map(|(j, u)| self.unit(i, j, agent, u)).collect();
         for (k, arbiter) in agent.arbiters.iter().enumerate() {
             let actuator = reach::port(agent, false, arbiter.actuator);
             let strategy = match &arbiter.strategy {
@@ -120,7 +131,11 @@ impl Builder<'_> {
                 Strategy::Switch => "switch",
                 Strategy::Blend(_) => "blend",
             };
-            let id = self.thing(Kind::Arbiter, &format!("{i}.{k}"), vec![format!("{}.{actuator}", agent.name), strategy.into()]);
+            let id = self.thing(
+                Kind::Arbiter,
+                &format!("{i}.{k}"),
+                vec![format!("{}.{actuator}", agent.name), strategy.into()],
+            );
             for (rank, s) in arbiter.sources.iter().enumerate() {
                 self.link(&unit_id(s.agent as usize, s.unit as usize), &id, &format!("{}", rank + 1));
             }
@@ -145,7 +160,8 @@ impl Builder<'_> {
             let topic = self.topic(*t);
             self.link(&id, &topic, "");
         }
-        for p in r.commands.iter().filter(|p| !self.arbitrated(i, j, agent, **p)).copied().collect::<Vec<_>>() {
+        for p in r.commands.iter().filter(|p| !self.arbitrated(i, j, agent, **p)).copied().collect::<Vec<_>>()
+        {
             let name = reach::port(agent, false, p);
             let actuator = self.thing(Kind::Actuator, &name, vec![name.clone()]);
             self.link(&id, &actuator, "");
@@ -161,13 +177,19 @@ impl Builder<'_> {
                 self.link(&id, &unit_id(k, l), &format!("{performative} {content}"));
             }
         }
-        UnitBox { id, title: format!("{} {}", unit.name, self.trigger(agent, unit)), inside: self.inside(unit) }
+        UnitBox {
+            id,
+            title: format!("{} {}", unit.name, self.trigger(agent, unit)),
+            inside: self.inside(unit),
+        }
     }
 
     fn topic(&mut self, index: u32) -> String {
         let graph = self.graph;
         match graph.topics.get(index as usize) {
-            Some(t) => self.thing(Kind::Topic, &t.channel.name, vec![t.channel.name.to_string(), t.ty.to_string()]),
+            Some(t) => {
+                self.thing(Kind::Topic, &t.channel.name, vec![t.channel.name.to_string(), t.ty.to_string()])
+            }
             None => self.thing(Kind::Topic, "?", vec!["?".into()]),
         }
     }
@@ -188,7 +210,8 @@ impl Builder<'_> {
         let mut out = Vec::new();
         for (k, agent) in self.graph.agents.iter().enumerate().filter(|(_, a)| &*a.name == to) {
             for (l, unit) in agent.units.iter().enumerate() {
-                if matches!(&unit.trigger, Trigger::Told { performative: p, content: c, .. } if &**p == performative && &**c == content) {
+                if matches!(&unit.trigger, Trigger::Told { performative: p, content: c, .. } if &**p == performative && &**c == content)
+                {
                     out.push((k, l));
                 }
             }
@@ -232,9 +255,14 @@ impl Builder<'_> {
     fn plan(&self, nodes: &[PlanNode]) -> Inside {
         let mut edges = Vec::new();
         for (i, n) in nodes.iter().enumerate() {
-            edges.extend(n.children.iter().filter(|c| (**c as usize) < nodes.len()).map(|c| (i, *c as usize, String::new())));
+            edges.extend(
+                n.children
+                    .iter()
+                    .filter(|c| (**c as usize) < nodes.len())
+                    .map(|c| (i, *c as usize, String::new())),
+            );
         }
-        Inside::Nodes { round: false, nodes: nodes.iter().map(|n| cut(&plan_label(n))).collect(), edges }
+        Inside::Nodes { round: false, nodes: nodes.iter().map(|n| cut(&self.plan_label(n))).collect(), edges }
     }
 
     /// A guard as written; `otherwise` when it is empty.
@@ -244,10 +272,25 @@ impl Builder<'_> {
 
     /// The source text of a span, on one line, without the word that introduces it.
     fn text(&self, at: Span, otherwise: &str) -> String {
-        let text = self.graph.sources.get(at.file as usize).and_then(|s| s.text.get(at.start as usize..at.end as usize));
+        let text = self
+            .graph
+            .sources
+            .get(at.file as usize)
+            .and_then(|s| s.text.get(at.start as usize..at.end as usize));
         let line = text.unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
         let line = line.strip_prefix("when ").unwrap_or(&line);
         if line.is_empty() { otherwise.into() } else { cut(line) }
+    }
+
+    fn plan_label(&self, n: &PlanNode) -> String {
+        let (kind, expression) = plan_kind(n);
+        let label = n.label.split_whitespace().collect::<Vec<_>>().join(" ");
+        match expression.map(|e| self.text(e.span, "")).filter(|t| !t.is_empty()) {
+            Some(text) if label.is_empty() || label == kind => format!("{kind} {text}"),
+            _ if label.is_empty() => kind.into(),
+            _ if label.starts_with(kind) => label,
+            _ => format!("{kind}: {label}"),
+        }
     }
 
     fn goals(&mut self) {
@@ -257,7 +300,9 @@ impl Builder<'_> {
             for s in &goal.subgoals {
                 let agent = s.agent as usize;
                 let plan = self.graph.agents.get(agent).and_then(|a| {
-                    a.units.iter().position(|u| matches!(&u.kind, UnitKind::Plan { subgoal: Some(g), .. } if *g == s.name))
+                    a.units.iter().position(
+                        |u| matches!(&u.kind, UnitKind::Plan { subgoal: Some(g), .. } if *g == s.name),
+                    )
                 });
                 let from = plan.map_or_else(|| format!("a{agent}"), |j| unit_id(agent, j));
                 self.link(&from, &id, &s.name);
@@ -270,7 +315,8 @@ fn unit_id(agent: usize, unit: usize) -> String {
     format!("a{agent}u{unit}")
 }
 
-fn plan_label(n: &PlanNode) -> String {
+/// What a plan node is called, and the expression that belongs to it.
+fn plan_kind(n: &PlanNode) -> (&'static str, Option<&Expr>) {
     let kind = match &n.kind {
         PlanKind::Sequence { memory: true } => "sequence",
         PlanKind::Sequence { memory: false } => "reactive sequence",
@@ -287,8 +333,12 @@ fn plan_label(n: &PlanNode) -> String {
         PlanKind::WaitUntil(_) => "wait until",
         PlanKind::Act { .. } => "do",
     };
-    let label = n.label.split_whitespace().collect::<Vec<_>>().join(" ");
-    if label.is_empty() || label.starts_with(kind) { if label.is_empty() { kind.into() } else { label } } else { format!("{kind}: {label}") }
+    let expression = match &n.kind {
+        PlanKind::Timeout(e) | PlanKind::Check(e) | PlanKind::Wait(e) | PlanKind::WaitUntil(e) => Some(e),
+        PlanKind::Repeat { condition, .. } => condition.as_ref(),
+        _ => None,
+    };
+    (kind, expression)
 }
 
 fn cut(text: &str) -> String {

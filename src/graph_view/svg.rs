@@ -22,18 +22,32 @@ const STYLE: &str = "text{font:12px 'DejaVu Sans Mono',Menlo,Consolas,monospace;
 
 /// The picture's text.
 pub fn draw(view: &View) -> String {
-    let mut blocks: Vec<Block> = view.things.iter().map(Block::thing).collect();
+    let things = view.things.len();
+    let mut blocks: Vec<Block> = view.things.iter().map(|t| Block::thing(t, 0.0)).collect();
     blocks.extend(view.agents.iter().map(Block::agent));
-    let mut at: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
+    let mut at: BTreeMap<String, (usize, f64)> = BTreeMap::new();
     for (i, b) in blocks.iter().enumerate() {
-        for (id, y) in &b.anchors {
-            at.insert(id, (i, *y));
-        }
+        at.extend(b.anchors.iter().map(|(id, y)| (id.clone(), (i, *y))));
     }
-    let links: Vec<_> = view.links.iter().filter_map(|l| Some((l, *at.get(l.from.as_str())?, *at.get(l.to.as_str())?))).collect();
+    let links: Vec<_> =
+        view.links.iter().filter_map(|l| Some((l, *at.get(&l.from)?, *at.get(&l.to)?))).collect();
+    // Things grow with their labelled links; units of agents have one place for all.
+    let pairs: Vec<(usize, usize, bool)> =
+        links.iter().map(|(l, a, b)| (a.0, b.0, !l.label.is_empty())).collect();
+    let (heights, ends) = layout::slots(&blocks.iter().map(|b| b.size.h).collect::<Vec<_>>(), &pairs);
+    for (i, t) in view.things.iter().enumerate() {
+        blocks[i] = Block::thing(t, heights[i]);
+    }
     let edges: Vec<Edge> = links
         .iter()
-        .map(|(l, a, b)| Edge { from: a.0, to: b.0, from_y: a.1, to_y: b.1, label_w: width(&l.label, SMALL) })
+        .zip(ends)
+        .map(|((l, a, b), ends)| Edge {
+            from: a.0,
+            to: b.0,
+            from_y: if a.0 < things { ends.0 } else { a.1 },
+            to_y: if b.0 < things { ends.1 } else { b.1 },
+            label_w: width(&l.label, SMALL),
+        })
         .collect();
     let sizes: Vec<Size> = blocks.iter().map(|b| b.size).collect();
     let placed = layout::place(&sizes, &edges);
@@ -75,15 +89,16 @@ struct Block {
 }
 
 impl Block {
-    fn thing(t: &Thing) -> Block {
+    fn thing(t: &Thing, height: f64) -> Block {
         let w = t.lines.iter().map(|l| width(l, CHAR)).fold(30.0, f64::max) + 2.0 * PAD;
-        let h = t.lines.len() as f64 * LINE + PAD;
+        let text = t.lines.len() as f64 * LINE + PAD;
+        let h = text.max(height);
         let (class, radius) = match t.kind {
-            Kind::Sensor => ("sensor", h / 2.0),
+            Kind::Sensor => ("sensor", text / 2.0),
             Kind::Actuator => ("actuator", 2.0),
             Kind::Topic => ("topic", 8.0),
             Kind::Arbiter => ("arbiter", 2.0),
-            Kind::Goal => ("goal", h / 2.0),
+            Kind::Goal => ("goal", text / 2.0),
         };
         let mut s = String::new();
         rect(&mut s, class, 0.0, 0.0, w, h, radius);
@@ -92,7 +107,7 @@ impl Block {
                 s,
                 "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
                 w / 2.0,
-                PAD / 2.0 + 12.0 + i as f64 * LINE,
+                (h - text) / 2.0 + PAD / 2.0 + 12.0 + i as f64 * LINE,
                 escape(l)
             );
         }
@@ -110,13 +125,19 @@ impl Block {
             for (id, at) in &u.anchors {
                 anchors.push((id.clone(), y + at));
                 let _ = write!(inner, "<path class=\"p\" d=\"M0 {0:.1}H{PAD}\"/>", y + at);
-                let _ = write!(inner, "<path class=\"p\" d=\"M{1:.1} {0:.1}H{w:.1}\"/>", y + at, PAD + u.size.w);
+                let _ =
+                    write!(inner, "<path class=\"p\" d=\"M{1:.1} {0:.1}H{w:.1}\"/>", y + at, PAD + u.size.w);
             }
             y += u.size.h + PAD;
         }
         let mut s = String::new();
         rect(&mut s, "agent", 0.0, 0.0, w, y, 6.0);
-        let _ = write!(s, "<text class=\"t\" x=\"{PAD}\" y=\"{:.1}\">{}</text>{inner}", PAD / 2.0 + 13.0, escape(&a.title));
+        let _ = write!(
+            s,
+            "<text class=\"t\" x=\"{PAD}\" y=\"{:.1}\">{}</text>{inner}",
+            PAD / 2.0 + 13.0,
+            escape(&a.title)
+        );
         Block { size: Size { w, h: y }, drawing: s, anchors }
     }
 
@@ -126,10 +147,18 @@ impl Block {
             Inside::Nodes { round, nodes, edges } => inner_graph(*round, nodes, edges),
         };
         let head = LINE + PAD;
-        let (w, h) = (size.w.max(width(&u.title, CHAR)) + 2.0 * PAD, size.h + head + if size.h > 0.0 { PAD } else { 0.0 });
+        let (w, h) = (
+            size.w.max(width(&u.title, CHAR)) + 2.0 * PAD,
+            size.h + head + if size.h > 0.0 { PAD } else { 0.0 },
+        );
         let mut s = String::new();
         rect(&mut s, "unit", 0.0, 0.0, w, h, 3.0);
-        let _ = write!(s, "<text class=\"t\" x=\"{PAD}\" y=\"{:.1}\">{}</text>", PAD / 2.0 + 13.0, escape(&u.title));
+        let _ = write!(
+            s,
+            "<text class=\"t\" x=\"{PAD}\" y=\"{:.1}\">{}</text>",
+            PAD / 2.0 + 13.0,
+            escape(&u.title)
+        );
         let _ = write!(s, "<g transform=\"translate({PAD} {head})\">{inside}</g>");
         Block { size: Size { w, h }, drawing: s, anchors: vec![(u.id.clone(), head / 2.0)] }
     }
@@ -138,22 +167,28 @@ impl Block {
 fn text_lines(lines: &[String]) -> (Size, String) {
     let mut s = String::new();
     for (i, l) in lines.iter().enumerate() {
-        let _ = write!(s, "<text x=\"0\" y=\"{:.1}\">{}. {}</text>", 10.0 + i as f64 * LINE, i + 1, escape(l));
+        let _ =
+            write!(s, "<text x=\"0\" y=\"{:.1}\">{}. {}</text>", 10.0 + i as f64 * LINE, i + 1, escape(l));
     }
     let w = lines.iter().map(|l| width(l, CHAR) + 4.0 * CHAR).fold(0.0, f64::max);
     (Size { w, h: lines.len() as f64 * LINE }, s)
 }
 
 fn inner_graph(round: bool, nodes: &[String], edges: &[(usize, usize, String)]) -> (Size, String) {
-    let sizes: Vec<Size> = nodes.iter().map(|n| Size { w: width(n, CHAR) + 16.0, h: 24.0 }).collect();
-    // Edges of a pair of states leave and arrive at different heights, so that their labels do not meet.
+    let pairs: Vec<(usize, usize, bool)> =
+        edges.iter().map(|(a, b, label)| (*a, *b, !label.is_empty())).collect();
+    let (heights, ends) = layout::slots(&vec![24.0; nodes.len()], &pairs);
+    let sizes: Vec<Size> =
+        nodes.iter().zip(heights).map(|(n, h)| Size { w: width(n, CHAR) + 16.0, h }).collect();
     let lanes: Vec<Edge> = edges
         .iter()
-        .enumerate()
-        .map(|(i, (a, b, label))| {
-            let twin = edges[..i].iter().filter(|(c, d, _)| (c, d) == (a, b) || (c, d) == (b, a)).count();
-            let y = [12.0, 18.0, 6.0, 21.0, 3.0][twin % 5];
-            Edge { from: *a, to: *b, from_y: y, to_y: y, label_w: width(label, SMALL) }
+        .zip(ends)
+        .map(|((a, b, label), (from_y, to_y))| Edge {
+            from: *a,
+            to: *b,
+            from_y,
+            to_y,
+            label_w: width(label, SMALL),
         })
         .collect();
     let p: Placed = layout::place(&sizes, &lanes);
@@ -163,14 +198,33 @@ fn inner_graph(round: bool, nodes: &[String], edges: &[(usize, usize, String)]) 
         let (x, y) = p.boxes[i];
         rect(&mut s, "node", x, y, sizes[i].w, sizes[i].h, if round { 12.0 } else { 2.0 });
         if round && i == 0 {
-            let _ = write!(s, "<rect class=\"p\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"18\" rx=\"9\"/>", x + 3.0, y + 3.0, sizes[i].w - 6.0);
+            let _ = write!(
+                s,
+                "<rect class=\"p\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"9\"/>",
+                x + 3.0,
+                y + 3.0,
+                sizes[i].w - 6.0,
+                sizes[i].h - 6.0
+            );
         }
-        let _ = write!(s, "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>", x + sizes[i].w / 2.0, y + 16.0, escape(n));
+        let _ = write!(
+            s,
+            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            x + sizes[i].w / 2.0,
+            y + sizes[i].h / 2.0 + 4.0,
+            escape(n)
+        );
     }
     for ((a, b, label), route) in edges.iter().zip(&p.routes) {
         if a == b {
             let (x, y) = p.boxes[*a];
-            loop_edge(&mut s, x + sizes[*a].w, y + 6.0, y + 18.0, label);
+            loop_edge(
+                &mut s,
+                x + sizes[*a].w,
+                y + sizes[*a].h / 2.0 - 6.0,
+                y + sizes[*a].h / 2.0 + 6.0,
+                label,
+            );
             extra = extra.max(x + sizes[*a].w + 36.0 + width(label, SMALL) - p.w);
         } else {
             curve(&mut s, route, label);
@@ -185,13 +239,27 @@ fn curve(s: &mut String, route: &[(f64, f64)], label: &str) {
     let mut d = format!("M{:.1} {:.1}", first.0, first.1);
     for w in route.windows(2) {
         let bend = (w[1].0 - w[0].0) / 2.0;
-        let _ = write!(d, "C{:.1} {:.1} {:.1} {:.1} {:.1} {:.1}", w[0].0 + bend, w[0].1, w[1].0 - bend, w[1].1, w[1].0, w[1].1);
+        let _ = write!(
+            d,
+            "C{:.1} {:.1} {:.1} {:.1} {:.1} {:.1}",
+            w[0].0 + bend,
+            w[0].1,
+            w[1].0 - bend,
+            w[1].1,
+            w[1].0,
+            w[1].1
+        );
     }
     let _ = write!(s, "<path class=\"e\" d=\"{d}\"/>");
     if !label.is_empty() {
         let right = route.len() < 2 || route[route.len() - 2].0 <= last.0;
         let (x, anchor) = if right { (last.0 - 10.0, "end") } else { (last.0 + 10.0, "start") };
-        let _ = write!(s, "<text class=\"l\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>", last.1 - 3.0, escape(label));
+        let _ = write!(
+            s,
+            "<text class=\"l\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
+            last.1 - 3.0,
+            escape(label)
+        );
     }
     s.push('\n');
 }
@@ -199,20 +267,36 @@ fn curve(s: &mut String, route: &[(f64, f64)], label: &str) {
 /// A line that leaves a box on its right side and comes back to it.
 fn loop_edge(s: &mut String, x: f64, from: f64, to: f64, label: &str) {
     let out = x + 26.0;
-    let _ = write!(s, "<path class=\"e\" d=\"M{x:.1} {from:.1}C{out:.1} {from:.1} {out:.1} {to:.1} {x:.1} {to:.1}\"/>");
+    let _ = write!(
+        s,
+        "<path class=\"e\" d=\"M{x:.1} {from:.1}C{out:.1} {from:.1} {out:.1} {to:.1} {x:.1} {to:.1}\"/>"
+    );
     if !label.is_empty() {
-        let _ = write!(s, "<text class=\"l\" x=\"{:.1}\" y=\"{:.1}\">{}</text>", x + 24.0, (from + to) / 2.0 + 4.0, escape(label));
+        let _ = write!(
+            s,
+            "<text class=\"l\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            x + 24.0,
+            (from + to) / 2.0 + 4.0,
+            escape(label)
+        );
     }
 }
 
 fn rect(s: &mut String, class: &str, x: f64, y: f64, w: f64, h: f64, r: f64) {
-    let _ = write!(s, "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" rx=\"{r:.1}\"/>");
+    let _ = write!(
+        s,
+        "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\" rx=\"{r:.1}\"/>"
+    );
 }
 
 fn legend(s: &mut String, x: f64, y: f64) {
     let mut x = x;
     for name in ["sensor", "topic", "agent", "arbiter", "actuator", "goal"] {
-        let _ = write!(s, "<rect class=\"{name}\" x=\"{x:.1}\" y=\"{:.1}\" width=\"14\" height=\"10\" rx=\"2\"/>", y - 9.0);
+        let _ = write!(
+            s,
+            "<rect class=\"{name}\" x=\"{x:.1}\" y=\"{:.1}\" width=\"14\" height=\"10\" rx=\"2\"/>",
+            y - 9.0
+        );
         let _ = writeln!(s, "<text class=\"l\" x=\"{:.1}\" y=\"{y:.1}\">{name}</text>", x + 18.0);
         x += 34.0 + width(name, SMALL);
     }

@@ -50,8 +50,19 @@ fn is_variable(s: &str) -> bool {
 pub fn parse_type(text: &str) -> Result<Type, String> {
     match Pattern::parse(text)? {
         Pattern::Exact(t) => Ok(t),
-        _ => Err(format!("`{text}` is no type")),
+        p => settle(p).ok_or_else(|| format!("`{text}` is no type")),
     }
+}
+
+/// In a type without holes, a capital letter with digits is the name of a record or enum.
+fn settle(p: Pattern) -> Option<Type> {
+    Some(match p {
+        Pattern::Exact(t) => t,
+        Pattern::Var(name) => Type::Record(name.into()),
+        Pattern::Option(p) => settle(*p)?.optional(),
+        Pattern::List(p, n) => Type::List(Box::new(settle(*p)?), n.parse().ok()?),
+        _ => return None,
+    })
 }
 
 impl Pattern {

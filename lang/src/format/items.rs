@@ -264,10 +264,13 @@ impl Builder<'_, '_> {
                 if !alone {
                     b.dedent();
                 }
-                b.gap(match () {
-                    () if lambda => Gap::AfterValue,
-                    () if alone || (parts.is_empty() && !b.comment_next()) => Gap::Tight,
-                    () => Gap::Soft,
+                let empty = parts.is_empty() && !b.comment_next();
+                b.gap(if lambda {
+                    Gap::AfterValue
+                } else if alone || empty {
+                    Gap::Tight
+                } else {
+                    Gap::Soft
                 });
                 b.token();
                 b.close();

@@ -28,6 +28,17 @@ impl<'a> Checker<'a> {
                 self.report(d);
                 break;
             };
+            if chain.len() > 64 {
+                self.report(
+                    Diagnostic::error(
+                        code::NESTING,
+                        format!("`{}` extends more than 64 others", profile.name.name),
+                    )
+                    .at(profile.name.span, "too long a chain")
+                    .hint("extend fewer levels"),
+                );
+                break;
+            }
             if chain.iter().any(|p| p.name.name == next.name.name) {
                 self.report(
                     Diagnostic::error(code::RECURSION, format!("`{}` extends itself", next.name.name))

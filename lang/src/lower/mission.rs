@@ -46,6 +46,7 @@ pub fn lower(
             None
         }
     };
+    c.unused_constants();
     let failed = !c.errors.is_empty();
     c.drop_consequences(program);
     errors.append(&mut c.errors);
@@ -73,6 +74,8 @@ impl<'a> Checker<'a> {
             mission_lets: BTreeMap::new(),
             regions: Vec::new(),
             body: Body::new(Place::Constant),
+            used_constants: Default::default(),
+            written_statements: 0,
             expanding: Vec::new(),
             depth: 0,
             poisoned: Default::default(),
@@ -81,15 +84,27 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Constants that nothing uses are still checked, as far as they can be without a place of use.
+    fn unused_constants(&mut self) {
+        for (name, c) in &self.decls.constants {
+            if !self.used_constants.contains(name) && !self.poisoned.contains_key(name) {
+                self.agent = Default::default();
+                self.in_body(Body::new(Place::Scene), |s| s.expr(&c.value, None));
+            }
+        }
+    }
+
     /// Drops errors about names whose declaration is wrong itself, when that has been reported.
     fn drop_consequences(&mut self, program: &Program) {
         let poisoned = &self.poisoned;
+        let mut at = 0;
         self.errors.retain(|d| {
+            at += 1;
             let by_name = matches!(
                 d.code,
                 code::UNKNOWN_NAME | code::UNKNOWN_FIELD | code::UNKNOWN_TYPE | code::ARGUMENTS
             );
-            !(by_name && poisoned.contains(program.text(d.position())))
+            !(by_name && poisoned.get(program.text(d.position())).is_some_and(|before| at > *before))
         });
     }
 

@@ -206,6 +206,7 @@ impl Builder {
                     match *e.kind {
                         ExprKind::Name(name) => ExprKind::Call(Ident { name, span: e.span }, args),
                         ExprKind::Field(on, name) => ExprKind::Method(on, name, args),
+                        ExprKind::Bad => ExprKind::Bad,
                         _ => {
                             self.errors.push(
                                 Diagnostic::error(code::SYNTAX, "only a function can be called")
@@ -278,6 +279,14 @@ impl Builder {
             Rule::if_expr => {
                 let mut exprs: Vec<Expr> =
                     Cursor::new(p).all(Rule::expr).into_iter().map(|p| self.expr(p)).collect();
+                if exprs.len() > 2 * MAX_CHAIN {
+                    self.errors.push(
+                        Diagnostic::error(code::NESTING, format!("an `if` of more than {MAX_CHAIN} ways"))
+                            .at(span, "too long a chain")
+                            .hint("use `match` on an enum, or move parts into functions"),
+                    );
+                    return Expr { kind: Box::new(ExprKind::Bad), span };
+                }
                 let last = exprs.pop();
                 let mut arms = Vec::new();
                 let mut it = exprs.into_iter();
@@ -363,7 +372,7 @@ impl Builder {
                 self.errors.push(match did_you_mean(&part, unit_names()) {
                     Some(near) => d.hint(format!("did you mean `{near}`?")),
                     None => d.hint(
-                        "units are listed in docs/language.md; a division by a name needs spaces: `2 m / t`",
+                        "units are listed in docs/language.md; an operator before a name needs spaces: `2 m / t`, `2 m * n`",
                     ),
                 });
                 ExprKind::Bad

@@ -133,6 +133,7 @@ impl Builder {
                 let text: String = type_text(p);
                 match parse_type(&text.replace(',', ", ")) {
                     Ok(t) => TypeKind::Named(t),
+                    Err(_) if text.len() > 60 => TypeKind::Bad("this is no type".into()),
                     Err(why) => TypeKind::Bad(why),
                 }
             }

@@ -15,10 +15,13 @@ pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
     let found = &text[from..];
     let len = word_length(found);
     let expected = expected(e);
+    if let Some(d) = never_closed(file, at, text, from) {
+        return d;
+    }
     let title = if found.trim().is_empty() {
         "the text ends in the middle of something".to_string()
     } else {
-        format!("`{}` cannot stand here", &found[..len])
+        format!("`{}` cannot stand here", found[..len].escape_debug())
     };
     let label = match expected.as_slice() {
         [] => "unexpected".to_string(),
@@ -34,8 +37,29 @@ pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
     let d = Diagnostic::error(code::SYNTAX, title).at(Span::new(file, at + start, at + end), label);
     match did_you_mean(&found[..len], expected.iter().map(|s| s.trim_matches('`'))) {
         Some(near) => d.hint(format!("did you mean `{near}`?")),
+        None if found.starts_with(|c: char| !c.is_ascii() && c.is_alphanumeric()) => {
+            d.hint("names are made of the letters a to z, digits and `_`; other letters can stand in texts and comments")
+        }
         None => d.hint("see the construct's grammar in docs/language.md, or `soifra explain S0101`"),
     }
+}
+
+/// The error for a text or comment that begins at `from` and does not end.
+fn never_closed(file: u32, at: usize, text: &str, from: usize) -> Option<Diagnostic> {
+    let found = &text[from..];
+    let start = if found.starts_with('*') && text[..from].ends_with('/') { from - 1 } else { from };
+    let error = |what: &str, end: usize| {
+        Diagnostic::error(code::SYNTAX, format!("{what} is never closed"))
+            .at(Span::new(file, at + start, at + end), "begins here")
+    };
+    if text[start..].starts_with("/*") {
+        return Some(error("this comment", start + 2).hint("close it with `*/`"));
+    }
+    let rest = found.strip_prefix('"')?;
+    let line = rest.split('\n').next().unwrap_or_default();
+    (!line.contains('"')).then(|| {
+        error("this text", start + 1).hint("close it with `\"` on the same line; texts have one line")
+    })
 }
 
 fn skip_blank(text: &str, mut from: usize) -> usize {

@@ -11,6 +11,9 @@ pub(super) struct Cover {
     pub rest: bool,
 }
 
+/// Most nodes that may be written out more than once.
+const MOST_REPEATED: usize = 20_000;
+
 impl Checker<'_> {
     /// A guard as conjuncts; what it binds stays in scope: the caller cuts the scope back.
     pub fn guard(&mut self, e: &Expr) -> Option<Vec<Conjunct>> {
@@ -117,7 +120,20 @@ impl Checker<'_> {
     /// optional first, else a chain of n such arms would grow like 2^n.
     fn chain(&mut self, guard: Vec<Conjunct>, then: GExpr, otherwise: GExpr, ty: &Type, span: Span) -> GExpr {
         let guard = merge(guard);
-        if guard.len() < 2 || matches!(ty, Type::Option(_)) {
+        if guard.len() < 2 {
+            return nest(guard, then, &otherwise, ty, span);
+        }
+        if matches!(ty, Type::Option(_)) {
+            let mut nodes = 0;
+            otherwise.walk(&mut |_| nodes += 1);
+            if nodes > MOST_REPEATED {
+                self.report(
+                    Diagnostic::error(code::UNBOUNDED, "too long a chain of `else if` with conditions that bind")
+                        .at(span, "grows with every arm")
+                        .hint("move the later arms into a function, or give `is some(x)` an arm of its own without `and`"),
+                );
+                return otherwise;
+            }
             return nest(guard, then, &otherwise, ty, span);
         }
         let optional = ty.clone().optional();

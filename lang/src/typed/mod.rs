@@ -140,12 +140,17 @@ pub struct Checker<'a> {
     pub regions: Vec<Name>,
     /// The body being checked.
     pub body: Body,
+    /// File-level constants that something uses.
+    pub used_constants: BTreeSet<Name>,
+    /// Statements that actions were written out to.
+    pub written_statements: usize,
     /// Constants being expanded, against rings.
     pub expanding: Vec<Name>,
     /// Depth of the expression being checked.
     pub depth: usize,
     /// Names whose declaration is wrong: what follows from that is not the user's second mistake.
-    pub poisoned: BTreeSet<Name>,
+    /// With the number of errors until then: only later ones follow from it.
+    pub poisoned: BTreeMap<Name, usize>,
     /// Expression nodes that constants were written out to.
     pub written_out: usize,
     /// Whether that was too much, which is reported once.
@@ -163,7 +168,8 @@ impl<'a> Checker<'a> {
 
     /// Remembers that the declaration of `name` is wrong.
     pub fn poison(&mut self, name: &Name) {
-        self.poisoned.insert(name.clone());
+        let before = self.errors.len();
+        self.poisoned.entry(name.clone()).or_insert(before);
     }
 
     /// Checks `f` in a fresh body and gives that body back with the result.

@@ -104,7 +104,7 @@ impl<'a> Checker<'a> {
         if let Some((local, ty)) = self.body.lets.get(name) {
             return Some(GExpr::new(Op::Local(*local), Vec::new(), ty.clone(), span));
         }
-        if self.ring(name, span) {
+        if self.broken_let(name) || self.ring(name, span) {
             return None;
         }
         self.expanding.push(name.clone());
@@ -130,7 +130,8 @@ impl<'a> Checker<'a> {
 
     /// A `let` of the mission or file: written out where it is used.
     fn constant(&mut self, name: &Name, c: &'a Constant, span: Span, want: Option<&Type>) -> Option<GExpr> {
-        if self.ring(name, span) {
+        self.used_constants.insert(name.clone());
+        if self.broken_let(name) || self.ring(name, span) {
             return None;
         }
         self.expanding.push(name.clone());
@@ -138,7 +139,10 @@ impl<'a> Checker<'a> {
         let value = self.expr(&c.value, want);
         self.body.scope = scope;
         self.expanding.pop();
-        let value = value?;
+        let Some(value) = value else {
+            self.poison(name);
+            return None;
+        };
         value.walk(&mut |_| self.written_out += 1);
         if self.written_out > MAX_WRITTEN_OUT {
             if !std::mem::replace(&mut self.too_much, true) {
@@ -148,20 +152,26 @@ impl<'a> Checker<'a> {
                         .hint("make one of the constants in it a `param`, or shorten the chain of constants that use others twice"),
                 );
             }
+            self.poison(name);
             return None;
         }
         Some(GExpr { span, ..value })
+    }
+
+    /// Whether a `let` has been found wrong before: once is enough.
+    fn broken_let(&self, name: &Name) -> bool {
+        !self.expanding.contains(name) && self.poisoned.contains_key(name)
     }
 
     fn ring(&mut self, name: &Name, span: Span) -> bool {
         if !self.expanding.contains(name) {
             return false;
         }
-        if self.poisoned.contains(name) {
+        if self.poisoned.contains_key(name) {
             return true;
         }
         let from = self.expanding.iter().position(|n| n == name).unwrap_or(0);
-        self.poisoned.extend(self.expanding[from..].iter().cloned());
+        self.expanding[from..].to_vec().iter().for_each(|n| self.poison(n));
         let ring: Vec<&str> = self.expanding.iter().map(|n| &**n).chain([&**name]).collect();
         let ring = ring.join(" → ");
         self.report(

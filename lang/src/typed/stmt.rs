@@ -8,6 +8,8 @@ use soifra_graph::{
 
 /// Deepest nesting of blocks.
 const MAX_BLOCKS: usize = 24;
+/// Most statements that the actions of a program may be written out to.
+const MAX_STATEMENTS: usize = 200_000;
 
 /// Performatives of FIPA-ACL that can be told, lower case.
 pub const PERFORMATIVES: &[&str] = &[
@@ -339,6 +341,9 @@ impl<'a> Checker<'a> {
             );
             return None;
         }
+        if self.too_much {
+            return None;
+        }
         self.enter_action(name, span)?;
         let body = self.action_body(action, name, args, span, depth);
         self.expanding.pop();
@@ -373,6 +378,17 @@ impl<'a> Checker<'a> {
         let outer = std::mem::replace(&mut self.body.scope, scope);
         let body = self.block(&action.body, depth + 1);
         self.body.scope = outer;
+        self.written_statements += body.len() + 1;
+        if self.written_statements > MAX_STATEMENTS {
+            if !std::mem::replace(&mut self.too_much, true) {
+                self.report(
+                    Diagnostic::error(code::UNBOUNDED, "actions grow beyond all measure")
+                        .at(span, "written out here once more")
+                        .hint("actions that do others twice double with every level: use fewer levels, or a plan"),
+                );
+            }
+            return None;
+        }
         Some(lets.into_iter().chain(body).map(|s| s.kind).collect())
     }
 

@@ -9,10 +9,21 @@ impl Checker<'_> {
     pub fn resolve_type(&mut self, t: &TypeRef, owner: Option<&Ident>) -> Option<Type> {
         match &t.kind {
             TypeKind::Bad(why) => {
+                let hint = if why.starts_with("`List<") {
+                    "a list says how many items it holds at most: `List<Beam, 8>`"
+                } else if why.starts_with("`Matrix<") {
+                    "a matrix has 1 to 8 rows and columns: `Matrix<2, 3>`"
+                } else if why.starts_with("`Point")
+                    || why.starts_with("`Vector")
+                    || why.starts_with("`Pose")
+                    || why.starts_with("`Heading")
+                {
+                    "name its frame: `Point<map>`, `Vector<map, Velocity>`"
+                } else {
+                    "types are listed in docs/language.md"
+                };
                 self.report(
-                    Diagnostic::error(code::UNKNOWN_TYPE, why.clone())
-                        .at(t.span, "written here")
-                        .hint("types are listed in docs/language.md"),
+                    Diagnostic::error(code::UNKNOWN_TYPE, why.clone()).at(t.span, "written here").hint(hint),
                 );
                 None
             }

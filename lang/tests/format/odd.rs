@@ -89,6 +89,11 @@ fn a_division_by_a_name_stays_one() {
         ("let x = 2 m^2", "let x = 2 m^2\n"),
         ("let x = y ^ 2", "let x = y^2\n"),
         ("let x = -(2 m) ^ - 2", "let x = -(2 m)^-2\n"),
+        ("let x = 2 m\nfn m() = 2\nfn n() = 1", "let x = 2 m\nfn m() = 2\nfn n() = 1\n"),
+        ("fn f() { let x = 2\nm }", "fn f() {\n  let x = 2\n  m\n}\n"),
+        ("fn f() { let x = y (m) }", "fn f() {\n  let x = y\n  (m)\n}\n"),
+        ("fn f() { let x = y(m) 3 }", "fn f() {\n  let x = y(m)\n  3\n}\n"),
+        ("let x = match y { a => 2\nm => 3 }", "let x = match y {\n  a => 2\n  m => 3\n}\n"),
         ("let x = 4%", "let x = 4 %\n"),
         ("let x = 1 ..3", "let x = 1 .. 3\n"),
         ("let x = 1e3 m", "let x = 1e3 m\n"),
@@ -105,7 +110,7 @@ fn keywords_can_be_names() {
     if let Ok(formatted) = soifra_lang::format(text) {
         assert_faithful("names", text, &formatted);
     }
-    let text = "fn step(at: Int) = at (1) + step(at)";
+    let text = "fn step( at:Int )=at(1)+step(at)";
     assert_eq!(format("names", text), "fn step(at: Int) = at(1) + step(at)\n");
 }
 

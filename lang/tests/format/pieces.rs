@@ -13,6 +13,14 @@ impl Piece {
     pub fn is_comment(&self) -> bool {
         self.text.starts_with("//") || self.text.starts_with("/*")
     }
+
+    /// Whether the blanks between this and the piece before mean something: a unit stands on the line of its
+    /// number, a call's bracket touches what is called.
+    pub fn is_bound_to(&self, before: &Piece) -> bool {
+        let unit = before.text.starts_with(|c: char| c.is_ascii_digit())
+            && self.text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '%');
+        unit || self.text == "(" && self.blanks.is_empty()
+    }
 }
 
 /// Cuts a source. A number and the unit that touches or follows it are apart, a unit is whole: `m/s`.

@@ -1,6 +1,6 @@
 //! The simulator: a scene whose robots are driven through the port contract.
 //!
-//! Motion is planned in pieces of constant velocity ([`body`]), so the world can be asked about any instant
+//! Motion is planned in pieces of constant velocity (`body.rs`), so the world can be asked about any instant
 //! up to now. A sensor captures at multiples of its period and delivers a latency later. What a poll
 //! returns depends on the commands and the instant alone, not on earlier polls.
 

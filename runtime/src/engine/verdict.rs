@@ -50,7 +50,9 @@ impl Track {
                 c.margin.is_some()
             }
             ExpectKindCode::Finally(_) => return true,
-            ExpectKindCode::Until(..) | ExpectKindCode::LeadsTo(..) => false,
+            ExpectKindCode::Until(..) => false,
+            // The margin is the slowest answer, also after one came too late.
+            ExpectKindCode::LeadsTo(_, _, limit) => limit.is_some(),
         };
         self.held.is_some() && !measured
     }

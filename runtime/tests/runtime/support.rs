@@ -249,6 +249,7 @@ pub fn run_with(mission: &Mission, settings: &Settings, prepare: impl FnOnce(&mu
 
 impl Ran {
     /// Activations that ran, as (ms, unit).
+    #[allow(dead_code, reason = "used by a test that is switched off; 2026-11")]
     pub fn activations(&self) -> Vec<(i64, String)> {
         self.records
             .iter()

@@ -1,0 +1,71 @@
+//! Every shipped mission: it passes the check, is in the standard form, and its run, a second run and the
+//! replay of the first are the same.
+
+use crate::support::{code, files, folder, json, root, soifra, stderr};
+use std::path::PathBuf;
+
+/// Files under `missions/`; with a line that begins `mission`, they can be run.
+fn missions() -> Vec<(String, bool)> {
+    let relative = |p: PathBuf| p.strip_prefix(root()).unwrap_or(&p).to_string_lossy().into_owned();
+    let runnable = |p: &PathBuf| {
+        std::fs::read_to_string(p).unwrap_or_default().lines().any(|l| l.starts_with("mission "))
+    };
+    files("missions", ".soi").into_iter().map(|p| (runnable(&p), p)).map(|(r, p)| (relative(p), r)).collect()
+}
+
+#[test]
+fn all_pass_the_check_without_a_warning() {
+    for (path, _) in missions() {
+        let o = soifra(&["check", "--deny", "warnings", &path]);
+        assert_eq!(code(&o), 0, "{path}: {}", stderr(&o));
+    }
+}
+
+#[test]
+fn all_are_in_the_standard_form() {
+    let mut all: Vec<String> = missions().into_iter().map(|(p, _)| p).collect();
+    for folder in ["platforms", "lang/std"] {
+        all.extend(files(folder, ".soi").iter().map(|p| p.to_string_lossy().into_owned()));
+    }
+    let mut arguments = vec!["fmt", "--check"];
+    arguments.extend(all.iter().filter(|p| !p.contains("/golden/")).map(String::as_str));
+    let o = soifra(&arguments);
+    assert_eq!(code(&o), 0, "{}{}", String::from_utf8_lossy(&o.stdout), stderr(&o));
+}
+
+#[test]
+fn run_and_second_run_and_replay_are_the_same() {
+    let dir = folder("missions_same");
+    for (i, (path, _)) in missions().into_iter().filter(|(_, runnable)| *runnable).enumerate() {
+        let mut digests = Vec::new();
+        for (name, threads) in [("a", "1"), ("b", "2")] {
+            let trace = dir.join(format!("{i}{name}.mcap")).to_string_lossy().into_owned();
+            let o = soifra(&[
+                "run",
+                &path,
+                "--seed",
+                "5",
+                "--trace",
+                &trace,
+                "--threads",
+                threads,
+                "--format",
+                "json",
+            ]);
+            assert!([0, 1].contains(&code(&o)), "{path}: {}", stderr(&o));
+            digests.push(json(&o)["trace"]["digest"].clone());
+        }
+        assert_eq!(digests[0], digests[1], "{path}: two runs differ");
+        let trace = dir.join(format!("{i}a.mcap")).to_string_lossy().into_owned();
+        for arguments in [vec!["replay", trace.as_str()], vec!["replay", trace.as_str(), "--recorded"]] {
+            let o = soifra(&arguments);
+            assert_eq!(code(&o), 0, "{path}: {}", stderr(&o));
+        }
+    }
+}
+
+#[test]
+fn their_own_tests_pass() {
+    let o = soifra(&["test", "missions"]);
+    assert_eq!(code(&o), 0, "{}{}", String::from_utf8_lossy(&o.stdout), stderr(&o));
+}
