@@ -160,7 +160,7 @@ impl Board {
                 self.sites.push(Site { at, sender: s as u32, message: slot as u32 });
             }
         }
-        self.grid.build(&self.sites);
+        self.grid.build(&self.sites, self.channel.range.unwrap_or(f64::INFINITY));
     }
 
     /// The ring slot of the newest message of sender `s` that is on the air and is `wanted` by number.

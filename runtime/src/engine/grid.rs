@@ -10,7 +10,8 @@ pub(crate) struct Site {
     pub message: u32,
 }
 
-/// Sites sorted into square cells of the xy-plane, about two in each.
+/// Sites sorted into square cells of the xy-plane: about two in each, or as wide as the range when that is
+/// less, as far as memory in proportion to the sites allows.
 #[derive(Debug, Default)]
 pub(crate) struct Grid {
     cell: f64,
@@ -24,8 +25,8 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Sorts sites. Sites of one cell stay in order.
-    pub fn build(&mut self, sites: &[Site]) {
+    /// Sorts sites, to be asked for those within `range`. Sites of one cell stay in order.
+    pub fn build(&mut self, sites: &[Site], range: f64) {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
         for s in sites {
@@ -37,11 +38,15 @@ impl Grid {
         let extent = [0, 1].map(|a| (high[a] - low[a]).max(0.0));
         // A row of robots has no area: then the cells share its length.
         let n = sites.len().max(1) as f64;
-        let cell = (2.0 * extent[0] * extent[1] / n).sqrt().max(2.0 * extent[0].max(extent[1]) / n);
+        let (area, length) = (extent[0] * extent[1], extent[0].max(extent[1]));
+        let even = (2.0 * area / n).sqrt().max(2.0 * length / n);
+        // Robots in a ring leave most of its square empty: then finer cells pay.
+        let finest = (area / (8.0 * n)).sqrt().max(length / (4.0 * n));
+        let cell = even.min(range.max(finest));
         self.cell =
             if cell.is_finite() && cell > 1e-9 { cell } else { 1e-9_f64.max(extent[0].max(extent[1])) };
         self.low = if sites.is_empty() { [0.0; 2] } else { low };
-        let most = 2 * sites.len() + 2;
+        let most = 4 * sites.len() + 2;
         self.size = extent.map(|e| ((e / self.cell) as usize + 1).min(most));
         self.starts.clear();
         self.starts.resize(self.size[0] * self.size[1] + 1, 0);
@@ -132,10 +137,10 @@ mod tests {
                     })
                     .collect();
                 let mut grid = Grid::default();
-                grid.build(&sites);
                 for (at, range) in
                     [([3.0, 4.0, 0.0], 2.5), ([-30.0, 4.0, 0.0], 35.0), ([10.0, 10.0, 0.0], 1e9)]
                 {
+                    grid.build(&sites, range);
                     let near = |s: &Site| {
                         let d = [0, 1].map(|a| s.at[a] - at[a]);
                         d[0] * d[0] + d[1] * d[1] <= range * range

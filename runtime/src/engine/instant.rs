@@ -52,11 +52,21 @@ impl Engine<'_> {
     /// Everything that happens at this instant.
     fn instant(&mut self) -> Option<End> {
         self.events += 1;
+        let limit = self.most_events();
+        if self.events > limit && self.aborted.is_none() {
+            let text = format!("something is due more than {limit} times at one instant");
+            self.fail(None, "platform", text, None);
+        }
         self.poll();
         self.arrive();
         self.activate_all();
         self.decide();
         self.judge_instant()
+    }
+
+    /// The most activations and polls at one instant.
+    fn most_events(&self) -> usize {
+        TOO_MANY.max(100 * self.cast.units.len())
     }
 
     /// Takes what the platform hands over.
@@ -290,7 +300,7 @@ impl Engine<'_> {
     fn activate_all(&mut self) {
         while !self.releases.is_empty() && self.aborted.is_none() {
             let mut releases = std::mem::take(&mut self.releases);
-            let limit = TOO_MANY.max(100 * self.cast.units.len());
+            let limit = self.most_events();
             self.events += releases.len();
             if self.events > limit {
                 let text = format!("more than {limit} activations at one instant");

@@ -6,7 +6,7 @@
 use super::{
     Mission, Settings,
     code::*,
-    compile::{Compiled, alone, alone_as, damaged},
+    compile::{Compiled, alone, alone_as, damaged, perhaps},
     start::Start,
 };
 use crate::{
@@ -28,7 +28,7 @@ pub(super) fn compile(c: &mut Compiler<'_>, graph: &Graph) -> Compiled<SceneCode
         list.iter().map(|x| component(c, x)).collect()
     };
     Ok(SceneCode {
-        step: graph.step.as_ref().map(|e| alone(c, e, &[])).transpose()?,
+        step: perhaps(c, graph.step.as_ref())?,
         world: components(c, &graph.world)?,
         platforms: graph.platforms.iter().map(|p| components(c, &p.components)).collect::<Compiled<_>>()?,
         robots: graph.robots.iter().map(|r| robot(c, r)).collect::<Compiled<_>>()?,
@@ -132,7 +132,9 @@ fn place(
     let index = [(0, index as f64)];
     start.stream = Some(Stream::new(start.seed, &format!("robot/{name}/start")));
     let mut pose = [0.0; 7];
-    pose.copy_from_slice(start.run(&code.start, &index)?);
+    for (p, x) in pose.iter_mut().zip(start.run(&code.start, &index)?) {
+        *p = *x;
+    }
     let mut scattered = pose;
     if let Some(scatter) = &code.scatter {
         let from = Distribution::from_registers(start.run(scatter, &index)?);

@@ -153,3 +153,30 @@ fn parameters_are_checked_and_set() {
     assert_eq!(refused("speed", Value::Bool(true)).title, "parameter `speed` must be a Velocity");
     assert!(mission.scene(&with(&[("speed", Value::Number(f64::NAN))])).is_err());
 }
+
+/// A platform that always has something to hand over, and never does.
+struct Stuck;
+
+impl soifra_runtime::Platform for Stuck {
+    fn next_due(&self) -> Option<Time> {
+        Some(Time::ZERO)
+    }
+    fn poll(&mut self, _: Time, _: &mut soifra_runtime::Readings, _: &mut Vec<Report>) {}
+    fn send(&mut self, _: Time, _: u32, _: u32, _: &[f64], _: Time) {}
+    fn safe_action(&mut self, _: Time, _: u32) -> &'static str {
+        "stop"
+    }
+    fn truth(&self) -> Option<&dyn soifra_runtime::WorldTruth> {
+        None
+    }
+}
+
+#[test]
+fn a_platform_that_stands_still_in_time_aborts() {
+    let mission = mission(DIVIDES);
+    let scene = mission.scene(&settings()).unwrap();
+    let (mut records, stop) = (Vec::new(), AtomicBool::new(false));
+    let report = Engine::new(&mission, &settings(), &scene, &mut Stuck, &mut records, &stop).unwrap().run();
+    assert_eq!(report.outcome, Outcome::Aborted);
+    assert!(report.reason.contains("times at one instant"), "{}", report.reason);
+}

@@ -248,20 +248,6 @@ pub fn run_with(mission: &Mission, settings: &Settings, prepare: impl FnOnce(&mu
 }
 
 impl Ran {
-    /// Activations that ran, as (ms, unit).
-    #[allow(dead_code, reason = "used by a test that is switched off; 2026-11")]
-    pub fn activations(&self) -> Vec<(i64, String)> {
-        self.records
-            .iter()
-            .filter_map(|r| match &r.event {
-                Event::Activation { unit, skipped: None, start, .. } => {
-                    Some((start.0 / 1_000_000, unit.clone()))
-                }
-                _ => None,
-            })
-            .collect()
-    }
-
     /// Remarks, as (ms, text).
     pub fn notes(&self) -> Vec<(i64, String)> {
         self.records
