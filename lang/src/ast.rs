@@ -342,7 +342,7 @@ pub enum AgentMember {
     /// `action`
     Action(Action),
     /// `service`, `machine`, `plan`
-    Unit(Unit),
+    Unit(Box<Unit>),
     /// `arbitrate`
     Arbiter(Arbiter),
 }

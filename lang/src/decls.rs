@@ -118,12 +118,19 @@ pub fn unknown<'n>(
     known: impl IntoIterator<Item = &'n str>,
 ) -> Diagnostic {
     let known: Vec<&str> = known.into_iter().collect();
-    let d = Diagnostic::error(code, format!("there is no {what} `{name}`")).at(span, "not declared");
+    // `x` is no part of y, but there is no agent `x`.
+    let title = if what.contains(" of ") {
+        format!("`{name}` is no {what}")
+    } else {
+        format!("there is no {what} `{name}`")
+    };
+    let d = Diagnostic::error(code, title).at(span, "not declared");
     match did_you_mean(name, known.iter().copied()) {
         Some(near) => d.hint(format!("did you mean `{near}`?")),
         None if known.is_empty() => {
             d.hint(format!("no {what} is declared here; declare it or import the file that does"))
         }
+        None if known.len() == 1 => d.hint(format!("the only one is {}", known[0])),
         None if known.len() <= 12 => d.hint(format!("known are {}", known.join(", "))),
         None => d.hint("declare it, or import the file that does"),
     }

@@ -59,14 +59,14 @@ impl Program {
         let text = text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text);
         let (tree, errors) = parse::parse(file as u32, &text);
         self.errors.extend(errors);
-        if let Some((edition, span)) = tree.edition {
-            if edition != i64::from(EDITION) {
-                self.errors.push(
-                    Diagnostic::error(code::EDITION, format!("edition {edition} is unknown"))
-                        .at(span, "asked for here")
-                        .hint(format!("this soifra reads edition {EDITION}; write `edition {EDITION}`")),
-                );
-            }
+        if let Some((edition, span)) = tree.edition
+            && edition != i64::from(EDITION)
+        {
+            self.errors.push(
+                Diagnostic::error(code::EDITION, format!("edition {edition} is unknown"))
+                    .at(span, "asked for here")
+                    .hint(format!("this soifra reads edition {EDITION}; write `edition {EDITION}`")),
+            );
         }
         self.modules.push(Module { tree, own });
         self.sources.push(Source { path: path.to_string(), text });

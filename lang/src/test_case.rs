@@ -37,7 +37,7 @@ pub fn collect(decls: &Decls<'_>, graph: Option<&Graph>, errors: &mut Vec<Diagno
 fn one(t: &Test, decls: &Decls<'_>, graph: Option<&Graph>, errors: &mut Vec<Diagnostic>) -> Option<TestCase> {
     let [run] = t.run.as_slice() else {
         let d = Diagnostic::error(code::TEST, "a test runs one mission")
-            .at(t.name.span, format!("{} `run` here", t.run.len()));
+            .at(t.name.span, if t.run.is_empty() { "no `run` here" } else { "more than one `run` here" });
         errors.push(d.hint("write `run MISSION` once"));
         return None;
     };
@@ -67,7 +67,7 @@ fn one(t: &Test, decls: &Decls<'_>, graph: Option<&Graph>, errors: &mut Vec<Diag
                 Some(r) => r,
                 None => {
                     errors.push(
-                        Diagnostic::error(code::TEST, "seeds are whole numbers")
+                        Diagnostic::error(code::TEST, "seeds are whole numbers, the smaller first")
                             .at(e.span, "not a range of them")
                             .hint("write `seeds 1 .. 20` or `seeds 7`"),
                     );
@@ -101,16 +101,16 @@ fn one(t: &Test, decls: &Decls<'_>, graph: Option<&Graph>, errors: &mut Vec<Diag
                 return None;
             }
         };
-        if let Some(p) = graph.and_then(|g| g.params.iter().find(|p| p.name == s.name.name)) {
-            if let Some(Err(why)) = graph.map(|g| parse_value(&text, &p.ty, &g.types)) {
-                errors.push(
-                    Diagnostic::error(code::MISMATCH, format!("{} is wanted: {why}", p.ty))
-                        .at(s.value.span, "set here")
-                        .at(p.at, format!("declared as {}", p.ty))
-                        .hint("write a value of the parameter's type, with its unit"),
-                );
-                return None;
-            }
+        if let Some(p) = graph.and_then(|g| g.params.iter().find(|p| p.name == s.name.name))
+            && let Some(Err(why)) = graph.map(|g| parse_value(&text, &p.ty, &g.types))
+        {
+            errors.push(
+                Diagnostic::error(code::MISMATCH, why)
+                    .at(s.value.span, "set here")
+                    .at(p.at, format!("declared as {}", p.ty))
+                    .hint("write a value of the parameter's type, with its unit"),
+            );
+            return None;
         }
         sets.push((s.name.name.clone(), text));
     }

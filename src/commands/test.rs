@@ -78,7 +78,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let mut worst = Exit::Success;
     for path in &sources {
         let path = path.to_string_lossy();
-        match (|| file(&path, a, pool.as_ref()))() {
+        match file(&path, a, pool.as_ref()) {
             Ok(entries) => document.tests.extend(entries),
             // A file that does not pass the check fails as a whole; the others are still run.
             Err(refusal) => {
@@ -148,7 +148,7 @@ fn gather(path: &Path, out: &mut Vec<PathBuf>) -> Result<(), Refusal> {
     for p in below {
         // Links are not followed into folders: they could lead in a circle.
         let folder = fs::symlink_metadata(&p).is_ok_and(|m| m.is_dir());
-        if folder && !p.file_name().is_some_and(|n| n == "golden") {
+        if folder && p.file_name().is_none_or(|n| n != "golden") {
             gather(&p, out)?;
         } else if p.extension().is_some_and(|e| e == "soi") && p.is_file() {
             out.push(p);

@@ -100,7 +100,6 @@ fn bad_form(findings: &Findings) -> Vec<String> {
 }
 
 #[test]
-#[ignore = "seven of the cases are being worked on: docs/status.md, 2026-11-22"]
 fn every_mistake_is_refused_where_it_is() {
     let (mut wrong, mut codes, mut areas) = (Vec::new(), BTreeSet::new(), BTreeMap::new());
     let cases = files("tests/golden/check_error", "soi");

@@ -76,7 +76,8 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         .into_iter()
         .filter(|c| *c != word)
         .map(|c| (edit_distance(word, c), c))
-        .filter(|(d, _)| *d <= limit)
+        // A word that has nothing in common with another is no slip of the keyboard.
+        .filter(|(d, c)| *d <= limit && *d < word.chars().count().max(c.chars().count()))
         .min()
         .map(|(_, c)| c)
 }

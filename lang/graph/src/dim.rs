@@ -13,34 +13,21 @@ pub struct Dim(pub [i8; 8]);
 
 const BASE: [&str; 8] = ["m", "kg", "s", "A", "K", "rad", "step", "px"];
 
-const fn d(
-    length: i8,
-    mass: i8,
-    time: i8,
-    current: i8,
-    temperature: i8,
-    angle: i8,
-    step: i8,
-    pixel: i8,
-) -> Dim {
-    Dim([length, mass, time, current, temperature, angle, step, pixel])
-}
-
 impl Dim {
     /// A plain number.
     pub const NONE: Dim = Dim([0; 8]);
     /// m
-    pub const LENGTH: Dim = d(1, 0, 0, 0, 0, 0, 0, 0);
+    pub const LENGTH: Dim = Dim([1, 0, 0, 0, 0, 0, 0, 0]);
     /// s
-    pub const TIME: Dim = d(0, 0, 1, 0, 0, 0, 0, 0);
+    pub const TIME: Dim = Dim([0, 0, 1, 0, 0, 0, 0, 0]);
     /// m/s
-    pub const VELOCITY: Dim = d(1, 0, -1, 0, 0, 0, 0, 0);
+    pub const VELOCITY: Dim = Dim([1, 0, -1, 0, 0, 0, 0, 0]);
     /// rad
-    pub const ANGLE: Dim = d(0, 0, 0, 0, 0, 1, 0, 0);
+    pub const ANGLE: Dim = Dim([0, 0, 0, 0, 0, 1, 0, 0]);
     /// rad/s
-    pub const ANGULAR_VELOCITY: Dim = d(0, 0, -1, 0, 0, 1, 0, 0);
+    pub const ANGULAR_VELOCITY: Dim = Dim([0, 0, -1, 0, 0, 1, 0, 0]);
     /// step
-    pub const STEP: Dim = d(0, 0, 0, 0, 0, 0, 1, 0);
+    pub const STEP: Dim = Dim([0, 0, 0, 0, 0, 0, 1, 0]);
 
     /// Product of two quantities, `None` when an exponent leaves ±100.
     pub fn times(self, other: Dim) -> Option<Dim> {
@@ -68,8 +55,8 @@ impl Dim {
 
     fn zip(self, other: Dim, f: impl Fn(i32, i32) -> i32) -> Option<Dim> {
         let mut out = [0; 8];
-        for i in 0..8 {
-            out[i] = narrow(f(i32::from(self.0[i]), i32::from(other.0[i])))?;
+        for (o, (a, b)) in out.iter_mut().zip(self.0.into_iter().zip(other.0)) {
+            *o = narrow(f(i32::from(a), i32::from(b)))?;
         }
         Some(Dim(out))
     }
@@ -126,30 +113,30 @@ impl fmt::Display for Dim {
 pub const QUANTITIES: &[(&str, Dim)] = &[
     ("Number", Dim::NONE),
     ("Length", Dim::LENGTH),
-    ("Area", d(2, 0, 0, 0, 0, 0, 0, 0)),
-    ("Volume", d(3, 0, 0, 0, 0, 0, 0, 0)),
-    ("Mass", d(0, 1, 0, 0, 0, 0, 0, 0)),
+    ("Area", Dim([2, 0, 0, 0, 0, 0, 0, 0])),
+    ("Volume", Dim([3, 0, 0, 0, 0, 0, 0, 0])),
+    ("Mass", Dim([0, 1, 0, 0, 0, 0, 0, 0])),
     ("Duration", Dim::TIME),
-    ("Frequency", d(0, 0, -1, 0, 0, 0, 0, 0)),
+    ("Frequency", Dim([0, 0, -1, 0, 0, 0, 0, 0])),
     ("Velocity", Dim::VELOCITY),
-    ("Acceleration", d(1, 0, -2, 0, 0, 0, 0, 0)),
+    ("Acceleration", Dim([1, 0, -2, 0, 0, 0, 0, 0])),
     ("Angle", Dim::ANGLE),
     ("AngularVelocity", Dim::ANGULAR_VELOCITY),
-    ("AngularAcceleration", d(0, 0, -2, 0, 0, 1, 0, 0)),
-    ("Force", d(1, 1, -2, 0, 0, 0, 0, 0)),
-    ("Torque", d(2, 1, -2, 0, 0, 0, 0, 0)),
-    ("Power", d(2, 1, -3, 0, 0, 0, 0, 0)),
-    ("Inertia", d(2, 1, 0, 0, 0, 0, 0, 0)),
-    ("Current", d(0, 0, 0, 1, 0, 0, 0, 0)),
-    ("Voltage", d(2, 1, -3, -1, 0, 0, 0, 0)),
-    ("Resistance", d(2, 1, -3, -2, 0, 0, 0, 0)),
-    ("Inductance", d(2, 1, -2, -2, 0, 0, 0, 0)),
-    ("Charge", d(0, 0, 1, 1, 0, 0, 0, 0)),
-    ("Temperature", d(0, 0, 0, 0, 1, 0, 0, 0)),
+    ("AngularAcceleration", Dim([0, 0, -2, 0, 0, 1, 0, 0])),
+    ("Force", Dim([1, 1, -2, 0, 0, 0, 0, 0])),
+    ("Torque", Dim([2, 1, -2, 0, 0, 0, 0, 0])),
+    ("Power", Dim([2, 1, -3, 0, 0, 0, 0, 0])),
+    ("Inertia", Dim([2, 1, 0, 0, 0, 0, 0, 0])),
+    ("Current", Dim([0, 0, 0, 1, 0, 0, 0, 0])),
+    ("Voltage", Dim([2, 1, -3, -1, 0, 0, 0, 0])),
+    ("Resistance", Dim([2, 1, -3, -2, 0, 0, 0, 0])),
+    ("Inductance", Dim([2, 1, -2, -2, 0, 0, 0, 0])),
+    ("Charge", Dim([0, 0, 1, 1, 0, 0, 0, 0])),
+    ("Temperature", Dim([0, 0, 0, 0, 1, 0, 0, 0])),
     ("Steps", Dim::STEP),
-    ("Pace", d(1, 0, 0, 0, 0, 0, -1, 0)),
-    ("Pixels", d(0, 0, 0, 0, 0, 0, 0, 1)),
-    ("Curvature", d(-1, 0, 0, 0, 0, 0, 0, 0)),
+    ("Pace", Dim([1, 0, 0, 0, 0, 0, -1, 0])),
+    ("Pixels", Dim([0, 0, 0, 0, 0, 0, 0, 1])),
+    ("Curvature", Dim([-1, 0, 0, 0, 0, 0, 0, 0])),
 ];
 
 /// How a unit scales into SI: by a power of ten (exact in decimal), or by a factor.
@@ -172,25 +159,25 @@ const ATOMS: &[(&str, Dim, Scale)] = &[
     ("ns", Dim::TIME, Scale::Ten(-9)),
     ("min", Dim::TIME, Scale::Factor(60.0)),
     ("h", Dim::TIME, Scale::Factor(3600.0)),
-    ("Hz", d(0, 0, -1, 0, 0, 0, 0, 0), Scale::Ten(0)),
-    ("kHz", d(0, 0, -1, 0, 0, 0, 0, 0), Scale::Ten(3)),
+    ("Hz", Dim([0, 0, -1, 0, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("kHz", Dim([0, 0, -1, 0, 0, 0, 0, 0]), Scale::Ten(3)),
     ("rad", Dim::ANGLE, Scale::Ten(0)),
     ("mrad", Dim::ANGLE, Scale::Ten(-3)),
     ("deg", Dim::ANGLE, Scale::Factor(std::f64::consts::PI / 180.0)),
     ("rpm", Dim::ANGULAR_VELOCITY, Scale::Factor(std::f64::consts::PI / 30.0)),
-    ("kg", d(0, 1, 0, 0, 0, 0, 0, 0), Scale::Ten(0)),
-    ("g", d(0, 1, 0, 0, 0, 0, 0, 0), Scale::Ten(-3)),
-    ("N", d(1, 1, -2, 0, 0, 0, 0, 0), Scale::Ten(0)),
-    ("W", d(2, 1, -3, 0, 0, 0, 0, 0), Scale::Ten(0)),
-    ("V", d(2, 1, -3, -1, 0, 0, 0, 0), Scale::Ten(0)),
-    ("A", d(0, 0, 0, 1, 0, 0, 0, 0), Scale::Ten(0)),
-    ("mA", d(0, 0, 0, 1, 0, 0, 0, 0), Scale::Ten(-3)),
-    ("Ohm", d(2, 1, -3, -2, 0, 0, 0, 0), Scale::Ten(0)),
-    ("H", d(2, 1, -2, -2, 0, 0, 0, 0), Scale::Ten(0)),
-    ("K", d(0, 0, 0, 0, 1, 0, 0, 0), Scale::Ten(0)),
+    ("kg", Dim([0, 1, 0, 0, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("g", Dim([0, 1, 0, 0, 0, 0, 0, 0]), Scale::Ten(-3)),
+    ("N", Dim([1, 1, -2, 0, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("W", Dim([2, 1, -3, 0, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("V", Dim([2, 1, -3, -1, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("A", Dim([0, 0, 0, 1, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("mA", Dim([0, 0, 0, 1, 0, 0, 0, 0]), Scale::Ten(-3)),
+    ("Ohm", Dim([2, 1, -3, -2, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("H", Dim([2, 1, -2, -2, 0, 0, 0, 0]), Scale::Ten(0)),
+    ("K", Dim([0, 0, 0, 0, 1, 0, 0, 0]), Scale::Ten(0)),
     ("step", Dim::STEP, Scale::Ten(0)),
     ("steps", Dim::STEP, Scale::Ten(0)),
-    ("px", d(0, 0, 0, 0, 0, 0, 0, 1), Scale::Ten(0)),
+    ("px", Dim([0, 0, 0, 0, 0, 0, 0, 1]), Scale::Ten(0)),
     ("%", Dim::NONE, Scale::Ten(-2)),
 ];
 

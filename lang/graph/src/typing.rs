@@ -35,9 +35,9 @@ pub fn binary(op: Binary, a: &Type, b: &Type) -> Option<Type> {
         B::Mul => match (a, b) {
             (T::Int, T::Int) => Some(T::Int),
             (T::Vector(f, d), s) | (s, T::Vector(f, d)) => Some(T::Vector(f.clone(), d.times(number(s)?)?)),
-            (T::Matrix(r, n), T::Matrix(m, c)) => (n == m).then(|| T::Matrix(*r, *c)),
+            (T::Matrix(r, n), T::Matrix(m, c)) => (n == m).then_some(T::Matrix(*r, *c)),
             (T::Matrix(r, c), s) | (s, T::Matrix(r, c)) => {
-                (number(s)? == Dim::NONE).then(|| T::Matrix(*r, *c))
+                (number(s)? == Dim::NONE).then_some(T::Matrix(*r, *c))
             }
             (T::Twist, s) | (s, T::Twist) => (number(s)? == Dim::NONE).then_some(T::Twist),
             _ => Some(T::Quantity(number(a)?.times(number(b)?)?)),

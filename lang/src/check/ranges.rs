@@ -102,6 +102,9 @@ impl Ranges<'_> {
 
     /// Whether an argument is possible; reports it when not.
     fn argument(&mut self, argument: &str, e: &Expr, name: &str, index: i64) -> bool {
+        if matches!(e.ty, Type::Distribution(_)) {
+            return self.distribution(e, argument, name, index);
+        }
         if let Err(fault) = self.known.evaluate(e, index) {
             self.out.push(
                 Diagnostic::error(
@@ -113,36 +116,38 @@ impl Ranges<'_> {
             );
             return false;
         }
-        if matches!(e.ty, Type::Distribution(_)) {
-            return self.distribution(e, argument, name, index);
-        }
         let Some((_, must)) = RULES.iter().find(|(n, _)| *n == argument) else { return true };
         let Some(mut value) = self.known.value(e, index) else { return true };
         while let Value::Some(inner) = value {
             value = *inner;
         }
-        if let Some(why) = must.complaint(&value) {
-            let title = format!("`{argument}` of `{name}` cannot be this");
-            self.out.push(Diagnostic::error(code::RANGE, title).at(e.span, why).hint(must.hint()));
+        if let Some((why, seen)) = must.complaint(&value, &unit_of(&e.ty)) {
+            let title = format!("`{argument}` of `{name}` {why}");
+            self.out.push(Diagnostic::error(code::RANGE, title).at(e.span, seen).hint(must.hint()));
             return false;
         }
         true
     }
 
     fn distribution(&mut self, e: &Expr, argument: &str, name: &str, index: i64) -> bool {
-        let Some(Value::Distribution(d)) = self.known.value(e, index) else { return true };
+        let title = format!("`{argument}` of `{name}` is no distribution");
+        let hint = "write `normal(sd: 1 cm)`, `uniform(low, high)` or `skewed(best, mean, worst)`";
+        let d = match self.known.evaluate(e, index) {
+            Ok(Some(Value::Distribution(d))) => d,
+            Ok(_) => return true,
+            Err(fault) => {
+                self.out
+                    .push(Diagnostic::error(code::RANGE, title).at(fault.at, fault.to_string()).hint(hint));
+                return false;
+            }
+        };
         let why = match d {
             Distribution::Normal(_, sd) if sd < 0.0 => "a standard deviation below 0",
             Distribution::Uniform(a, b) if a > b => "its low end lies above its high end",
             Distribution::Skewed(a, b, c) if !(a <= b && b <= c) => "best, mean and worst are not in order",
             _ => return true,
         };
-        let title = format!("`{argument}` of `{name}` is no distribution");
-        self.out.push(
-            Diagnostic::error(code::RANGE, title)
-                .at(e.span, why)
-                .hint("write `normal(sd: 1 cm)`, `uniform(low, high)` or `skewed(best, mean, worst)`"),
-        );
+        self.out.push(Diagnostic::error(code::RANGE, title).at(e.span, why).hint(hint));
         false
     }
 
@@ -244,28 +249,35 @@ impl Ranges<'_> {
 }
 
 impl Must {
-    /// What is wrong with a value, in a few words.
-    fn complaint(self, v: &Value) -> Option<String> {
-        let positive = |x: f64| (x <= 0.0).then(|| format!("{x}, not above 0"));
+    /// What is wrong with a value in SI unit `unit`: the end of a title, and a label.
+    fn complaint(self, v: &Value, unit: &str) -> Option<(&'static str, String)> {
+        let shown = |x: f64| format!("{x} {unit}").trim_end().to_string();
+        let number = |wrong: fn(f64) -> bool, why| v.number().filter(|x| wrong(*x)).map(|x| (why, shown(x)));
         match (self, v) {
-            (Must::BePositive, Value::Vector(v)) => v.iter().find_map(|x| positive(*x)),
-            (Must::BePositive, Value::List(items)) => items.is_empty().then(|| "an empty list".to_string()),
-            (Must::BePositive, v) => positive(v.number()?),
-            (Must::NotBeNegative, v) => v.number().filter(|x| *x < 0.0).map(|x| format!("{x}, below 0")),
-            (Must::BeAChance, v) => {
-                v.number().filter(|x| !(0.0..=1.0).contains(x)).map(|x| format!("{x}, not from 0 to 1"))
+            (Must::BePositive, Value::Vector(v)) => {
+                v.iter().find(|x| **x <= 0.0).map(|x| ("must be above 0 in every part", shown(*x)))
             }
-            (Must::Ascend, Value::Range(a, b)) if a >= b => Some(format!("from {a} down to {b}")),
-            (Must::AscendFromZero, Value::Range(a, b)) if a >= b => Some(format!("from {a} down to {b}")),
-            (Must::AscendFromZero, Value::Range(a, _)) if *a < 0.0 => Some(format!("{a}, below 0")),
-            (Must::AscendFromZero, v) => positive(v.number()?),
+            (Must::BePositive, Value::List(items)) => {
+                items.is_empty().then(|| ("cannot be empty", "no items".to_string()))
+            }
+            (Must::BePositive, _) => number(|x| x <= 0.0, "must be above 0"),
+            (Must::NotBeNegative, _) => number(|x| x < 0.0, "cannot be below 0"),
+            (Must::BeAChance, _) => number(|x| !(0.0..=1.0).contains(&x), "must be from 0 to 1"),
+            (Must::Ascend | Must::AscendFromZero, Value::Range(a, b)) if a >= b => {
+                Some(("runs backwards", format!("from {} to {}", shown(*a), shown(*b))))
+            }
+            (Must::AscendFromZero, Value::Range(a, _)) if *a < 0.0 => {
+                Some(("cannot begin below 0", format!("from {}", shown(*a))))
+            }
+            (Must::AscendFromZero, _) => number(|x| x <= 0.0, "must be above 0"),
             (Must::BeAColour, Value::Text(t)) => {
                 let hex =
                     t.strip_prefix('#').filter(|h| h.len() == 6 && h.bytes().all(|b| b.is_ascii_hexdigit()));
-                hex.is_none().then(|| "no colour".to_string())
+                hex.is_none().then(|| ("is no colour", "not six digits after a `#`".to_string()))
             }
             (Must::HaveTwoPoints, Value::List(items)) if items.len() < 2 => {
-                Some(format!("{} of the two points it takes at least", items.len()))
+                let n = if items.len() == 1 { "one point" } else { "no point" };
+                Some(("leads nowhere", n.to_string()))
             }
             _ => None,
         }
@@ -283,5 +295,14 @@ impl Must {
                 "write where it turns round: `path: [(0 m, 0 m), (1 m, 0 m)]`; what stands still is an `obstacle`"
             }
         }
+    }
+}
+
+/// The SI unit of a quantity, or of what it is made of.
+fn unit_of(ty: &Type) -> String {
+    match ty {
+        Type::Quantity(d) | Type::Range(d) | Type::Vector(_, d) => d.si_unit(),
+        Type::Option(t) | Type::List(t, _) => unit_of(t),
+        _ => String::new(),
     }
 }

@@ -29,17 +29,17 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             }
         }
         walk::agent(a, &mut |e| {
-            if let Op::Heard(t) = e.op {
-                if let Some(slot) = read.get_mut(t as usize) {
-                    slot.get_or_insert(e.span);
-                }
+            if let Op::Heard(t) = e.op
+                && let Some(slot) = read.get_mut(t as usize)
+            {
+                slot.get_or_insert(e.span);
             }
         });
         for u in &a.units {
-            if let Trigger::Message { topic, .. } = u.trigger {
-                if let Some(slot) = read.get_mut(topic as usize) {
-                    slot.get_or_insert(u.span);
-                }
+            if let Trigger::Message { topic, .. } = u.trigger
+                && let Some(slot) = read.get_mut(topic as usize)
+            {
+                slot.get_or_insert(u.span);
             }
         }
     }

@@ -204,7 +204,11 @@ impl Builder<'_, '_> {
                     b.node(c);
                     b.dedent();
                 }
-                Rule::expr => b.expr(c, 2),
+                Rule::expr => {
+                    b.indent(1);
+                    b.expr(c, 1);
+                    b.dedent();
+                }
                 Rule::robot_target | Rule::robot_scatter => b.clause(c, 1),
                 Rule::robot_runs => {
                     inner = false;

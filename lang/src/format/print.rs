@@ -117,7 +117,7 @@ impl Printer<'_, '_> {
         let (mut pending, mut inline) = (breaks, false);
         let mut blank = gap == Gap::Blank && !paragraph;
         let mut first = opened;
-        for c in comments {
+        for (i, c) in comments.iter().enumerate() {
             match c.place(members, opened) {
                 Place::Own => {
                     self.line(comment_level, members && !first && (blank || c.breaks > 1));
@@ -129,6 +129,9 @@ impl Printer<'_, '_> {
                 }
                 Place::Inline => {
                     if pending {
+                        // With the token, unless another comment ends the line first.
+                        let alone = comments[i..].iter().any(|c| c.ends_line);
+                        let level = if alone { comment_level } else { level };
                         self.line(level, members && !first && (blank || c.breaks > 1));
                         (blank, first, pending) = (false, false, false);
                     } else if inline || !opened || !matches!(gap, Gap::Tight | Gap::Soft | Gap::AfterValue) {

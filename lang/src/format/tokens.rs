@@ -81,10 +81,10 @@ impl<'t> Source<'t> {
         }
         r.plain(text.len());
         r.token(text.len());
-        if let Some(last) = r.comments.last_mut() {
-            if r.tokens.last().is_some_and(|end| end.comments.end > end.comments.start) {
-                last.ends_line = true;
-            }
+        if let Some(last) = r.comments.last_mut()
+            && r.tokens.last().is_some_and(|end| end.comments.end > end.comments.start)
+        {
+            last.ends_line = true;
         }
         Source { tokens: r.tokens, comments: r.comments }
     }

@@ -51,18 +51,18 @@ impl<'a> Checker<'a> {
             }
         }
         for m in &a.members {
-            if let AgentMember::Unit(u) = m {
-                if let Some(unit) = self.unit(u, &mut out.states) {
-                    out.units.push(unit);
-                }
+            if let AgentMember::Unit(u) = m
+                && let Some(unit) = self.unit(u, &mut out.states)
+            {
+                out.units.push(unit);
             }
         }
         self.unused_parts(a);
         for m in &a.members {
-            if let AgentMember::Arbiter(x) = m {
-                if let Some(arbiter) = self.arbiter(x) {
-                    out.arbiters.push(arbiter);
-                }
+            if let AgentMember::Arbiter(x) = m
+                && let Some(arbiter) = self.arbiter(x)
+            {
+                out.arbiters.push(arbiter);
             }
         }
         out
@@ -205,10 +205,16 @@ impl<'a> Checker<'a> {
     /// Drops errors from index `from` that have been reported before.
     pub fn forget_repeated(&mut self, from: usize) {
         let new: Vec<Diagnostic> = self.errors.drain(from..).collect();
+        // How many were there before each of them, counted among those that stay.
+        let mut stay = vec![from];
         for d in new {
             if !self.errors.iter().any(|e| e.code == d.code && e.position() == d.position()) {
                 self.errors.push(d);
             }
+            stay.push(self.errors.len());
+        }
+        for before in self.poisoned.values_mut().filter(|b| **b > from) {
+            *before = stay.get(*before - from).copied().unwrap_or(self.errors.len());
         }
     }
 
@@ -217,15 +223,15 @@ impl<'a> Checker<'a> {
         let (value, _) =
             self.in_body(Body::new(Place::Start), |c| c.typed(e, &Type::Quantity(soifra_graph::Dim::TIME)));
         let value = value?;
-        if let Some(soifra_graph::Value::Number(s)) = value.as_const() {
-            if *s < 0.0 || *s > 9e8 {
-                self.report(
-                    Diagnostic::error(code::RANGE, "a duration out of range")
-                        .at(value.span, format!("{s} s"))
-                        .hint("durations are from 0 s to 9e8 s"),
-                );
-                return None;
-            }
+        if let Some(soifra_graph::Value::Number(s)) = value.as_const()
+            && (*s < 0.0 || *s > 9e8)
+        {
+            self.report(
+                Diagnostic::error(code::RANGE, "a duration out of range")
+                    .at(value.span, format!("{s} s"))
+                    .hint("durations are from 0 s to 9e8 s"),
+            );
+            return None;
         }
         Some(value)
     }

@@ -93,7 +93,7 @@ impl<'a> Checker<'a> {
         if !roles.contains(&&*e.role.name) {
             let d = unknown(
                 code::UNKNOWN_MODEL,
-                "entry of the kind",
+                "kind of entry here",
                 &e.role.name,
                 e.role.span,
                 roles.iter().copied(),

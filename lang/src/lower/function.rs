@@ -131,17 +131,17 @@ impl Checker<'_> {
             }
         }
         for f in self.decls.functions.values() {
-            if let Some(i) = &f.implements {
-                if !self.decls.interfaces.contains_key(&i.name) {
-                    let d = crate::decls::unknown(
-                        code::UNKNOWN_NAME,
-                        "interface",
-                        &i.name,
-                        i.span,
-                        self.decls.interfaces.keys().map(|k| &**k),
-                    );
-                    self.report(d);
-                }
+            if let Some(i) = &f.implements
+                && !self.decls.interfaces.contains_key(&i.name)
+            {
+                let d = crate::decls::unknown(
+                    code::UNKNOWN_NAME,
+                    "interface",
+                    &i.name,
+                    i.span,
+                    self.decls.interfaces.keys().map(|k| &**k),
+                );
+                self.report(d);
             }
         }
     }

@@ -178,7 +178,7 @@ impl<'a> Checker<'a> {
             }
         }
         // Service parameters need the list of implementations before their default is looked up.
-        for (name, _) in &self.decls.interfaces {
+        for name in self.decls.interfaces.keys() {
             let variants = self
                 .decls
                 .function_order
@@ -319,18 +319,18 @@ impl<'a> Checker<'a> {
             self.agents.iter().enumerate().map(|(i, a)| (a.name.clone(), i as u32)).collect();
         let replaced =
             choice.platform.as_ref().map(|p| ast::Ident { name: p.as_str().into(), span: m.name.span });
-        if let Some(p) = &replaced {
-            if !self.decls.platforms.contains_key(&p.name) {
-                let d = unknown(
-                    code::UNKNOWN_PLATFORM,
-                    "platform",
-                    &p.name,
-                    m.name.span,
-                    self.decls.platforms.keys().map(|k| &**k),
-                );
-                self.report(d);
-                return None;
-            }
+        if let Some(p) = &replaced
+            && !self.decls.platforms.contains_key(&p.name)
+        {
+            let d = unknown(
+                code::UNKNOWN_PLATFORM,
+                "platform",
+                &p.name,
+                m.name.span,
+                self.decls.platforms.keys().map(|k| &**k),
+            );
+            self.report(d);
+            return None;
         }
         let mut platforms = Vec::new();
         let mut robots: Vec<RobotGroup> = Vec::new();
@@ -377,7 +377,7 @@ impl<'a> Checker<'a> {
                                 format!("a metric is a number, this is {}", value.ty),
                             )
                             .at(value.span, value.ty.to_string())
-                            .hint("combine robots with `mean robot: …`, `most robot: …`, `count robot: …`"),
+                            .hint("take a part such as `.x`, or a norm; robots are combined with `mean robot: …`, `most robot: …`"),
                         );
                         continue;
                     }

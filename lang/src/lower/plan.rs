@@ -48,15 +48,15 @@ impl<'a> Checker<'a> {
             ),
             K::Parallel(k) => {
                 let count = n.children.len() as i64;
-                if let Some(k) = k {
-                    if *k < 1 || *k > count {
-                        self.report(
-                            Diagnostic::error(code::RANGE, format!("{k} of {count} children cannot succeed"))
-                                .at(n.span, "this parallel node")
-                                .hint(format!("write a number from 1 to {count}, or none for all")),
-                        );
-                        return None;
-                    }
+                if let Some(k) = k
+                    && (*k < 1 || *k > count)
+                {
+                    self.report(
+                        Diagnostic::error(code::RANGE, format!("{k} of {count} children cannot succeed"))
+                            .at(n.span, "this parallel node")
+                            .hint(format!("write a number from 1 to {count}, or none for all")),
+                    );
+                    return None;
                 }
                 simple(
                     PlanKind::Parallel { successes: k.map(|k| k as u32) },

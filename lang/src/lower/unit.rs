@@ -38,15 +38,15 @@ impl<'a> Checker<'a> {
             TriggerKind::Step(offset) => Trigger::Step { offset: self.offset(offset)? },
             TriggerKind::Every(period, offset) => {
                 let period = self.start_duration(period)?;
-                if let Some(Value::Number(s)) = period.as_const() {
-                    if *s < 1e-6 {
-                        self.report(
-                            Diagnostic::error(code::RANGE, "a period below 1 us")
-                                .at(period.span, format!("{s} s"))
-                                .hint("the shortest period is 1 us"),
-                        );
-                        return None;
-                    }
+                if let Some(Value::Number(s)) = period.as_const()
+                    && *s < 1e-6
+                {
+                    self.report(
+                        Diagnostic::error(code::RANGE, "a period below 1 us")
+                            .at(period.span, format!("{s} s"))
+                            .hint("the shortest period is 1 us"),
+                    );
+                    return None;
                 }
                 Trigger::Every { period, offset: self.offset(offset)? }
             }
@@ -82,12 +82,11 @@ impl<'a> Checker<'a> {
                     let names: Vec<Name> = self.types.records.keys().cloned().collect();
                     return self.unknown_trigger("record", content, &names);
                 }
-                if let Some(f) = from {
-                    if !self.decls.agents.iter().any(|a| a.name.name == f.name) {
-                        let names: Vec<Name> =
-                            self.decls.agents.iter().map(|a| a.name.name.clone()).collect();
-                        return self.unknown_trigger("agent", f, &names);
-                    }
+                if let Some(f) = from
+                    && !self.decls.agents.iter().any(|a| a.name.name == f.name)
+                {
+                    let names: Vec<Name> = self.decls.agents.iter().map(|a| a.name.name.clone()).collect();
+                    return self.unknown_trigger("agent", f, &names);
                 }
                 let local = body.bind(name, &Type::Record(content.name.clone()));
                 Trigger::Told {

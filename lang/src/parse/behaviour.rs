@@ -41,19 +41,24 @@ impl Builder {
                 Rule::service => {
                     let mut c = Cursor::new(p);
                     let (name, trigger, timing) = self.unit_head(&mut c);
-                    AgentMember::Unit(Unit {
+                    AgentMember::Unit(Box::new(Unit {
                         name,
                         trigger,
                         timing,
                         kind: UnitKind::Service(self.block_in(&mut c)),
-                    })
+                    }))
                 }
                 Rule::machine => {
                     let mut c = Cursor::new(p);
                     let (name, trigger, timing) = self.unit_head(&mut c);
                     let states =
                         c.all(Rule::machine_state).into_iter().map(|p| self.machine_state(p)).collect();
-                    AgentMember::Unit(Unit { name, trigger, timing, kind: UnitKind::Machine(states) })
+                    AgentMember::Unit(Box::new(Unit {
+                        name,
+                        trigger,
+                        timing,
+                        kind: UnitKind::Machine(states),
+                    }))
                 }
                 Rule::plan => {
                     let mut c = Cursor::new(p);
@@ -62,7 +67,12 @@ impl Builder {
                     let (trigger, timing) = self.trigger_and_timing(&mut c);
                     let Some(root) = c.take(Rule::plan_node) else { continue };
                     let root = self.plan_node(root);
-                    AgentMember::Unit(Unit { name, trigger, timing, kind: UnitKind::Plan(subgoal, root) })
+                    AgentMember::Unit(Box::new(Unit {
+                        name,
+                        trigger,
+                        timing,
+                        kind: UnitKind::Plan(subgoal, root),
+                    }))
                 }
                 Rule::arbiter => AgentMember::Arbiter(self.arbiter(p)),
                 _ => continue,
@@ -178,7 +188,10 @@ impl Builder {
             Rule::stmt => leaf(PlanKind::Stmt(self.stmt(p))),
             _ => {
                 let mut c = Cursor::new(p);
-                let kind = c.take(Rule::control).map_or(PlanKind::Succeed, |p| self.control(p));
+                let control = c.take(Rule::control);
+                // The head stands for the node in reports: its children have their own places.
+                let span = control.as_ref().map_or(span, |p| self.span(p));
+                let kind = control.map_or(PlanKind::Succeed, |p| self.control(p));
                 let children = c.all(Rule::plan_node).into_iter().map(|p| self.plan_node(p)).collect();
                 PlanNode { kind, children, span }
             }

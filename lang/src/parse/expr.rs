@@ -165,13 +165,12 @@ impl Builder {
                 };
                 e = Expr { kind: Box::new(kind), span };
             }
-            if !minus {
-                if let Some(Piece::Is(..)) = pieces.peek() {
-                    if let Some(Piece::Is(some, name, to)) = pieces.next() {
-                        let span = e.span.to(to);
-                        e = Expr { kind: Box::new(ExprKind::Is(e, some, name)), span };
-                    }
-                }
+            if !minus
+                && let Some(Piece::Is(..)) = pieces.peek()
+                && let Some(Piece::Is(some, name, to)) = pieces.next()
+            {
+                let span = e.span.to(to);
+                e = Expr { kind: Box::new(ExprKind::Is(e, some, name)), span };
             }
             let span = at.to(e.span);
             e = Expr { kind: Box::new(if minus { ExprKind::Neg(e) } else { ExprKind::Not(e) }), span };
@@ -384,7 +383,7 @@ impl Builder {
         self.errors.push(
             Diagnostic::error(code::NUMBER_RANGE, "this number is too large")
                 .at(span, "does not fit")
-                .hint("quantities must be finite doubles, whole numbers at most 9007199254740992"),
+                .hint("whole numbers go to 9007199254740992, quantities to about 1.8e308"),
         );
     }
 }

@@ -1,9 +1,9 @@
 //! pest's errors in the words of someone who writes missions.
 
-use super::Rule;
+use super::{Rule, advice};
 use crate::code;
 use pest::error::{Error, ErrorVariant, InputLocation};
-use soifra_graph::{Diagnostic, Span, did_you_mean};
+use soifra_graph::{Diagnostic, Span};
 
 /// The diagnostic for a syntax error in `text`, which starts at byte `at` of source `file`.
 pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
@@ -23,7 +23,7 @@ pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
     } else {
         format!("`{}` cannot stand here", found[..len].escape_debug())
     };
-    let label = match expected.as_slice() {
+    let label = match &expected[..expected.len().min(8)] {
         [] => "unexpected".to_string(),
         [one] => format!("expected {one}"),
         [init @ .., last] => format!("expected {} or {last}", init.join(", ")),
@@ -35,13 +35,19 @@ pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
         (from, from + len)
     };
     let d = Diagnostic::error(code::SYNTAX, title).at(Span::new(file, at + start, at + end), label);
-    match did_you_mean(&found[..len], expected.iter().map(|s| s.trim_matches('`'))) {
-        Some(near) => d.hint(format!("did you mean `{near}`?")),
-        None if found.starts_with(|c: char| !c.is_ascii() && c.is_alphanumeric()) => {
-            d.hint("names are made of the letters a to z, digits and `_`; other letters can stand in texts and comments")
+    // An open bracket matters where something of it was still to come.
+    let round =
+        advice::open_bracket(text, from).filter(|b| !text[*b..].starts_with('{') || found.trim().is_empty());
+    let d = match round {
+        Some(b) => d.at(Span::new(file, at + b, at + b + 1), "this bracket is still open"),
+        None => d,
+    };
+    d.hint(match round.filter(|_| found[..len].chars().all(|c| c.is_ascii_alphabetic())) {
+        Some(_) if !found.trim().is_empty() => {
+            "close the bracket before this, or finish what stands in it".to_string()
         }
-        None => d.hint("see the construct's grammar in docs/language.md, or `soifra explain S0101`"),
-    }
+        _ => advice::hint(text, from, &expected),
+    })
 }
 
 /// The error for a text or comment that begins at `from` and does not end.
@@ -75,7 +81,7 @@ fn word_length(s: &str) -> usize {
     if word > 0 { word.min(64) } else { s.chars().next().map_or(0, char::len_utf8) }
 }
 
-/// What could have stood there, as words; at most eight, most telling first.
+/// What could have stood there, as words, most telling first.
 fn expected(e: &Error<Rule>) -> Vec<String> {
     let ErrorVariant::ParsingError { positives, .. } = &e.variant else { return Vec::new() };
     let mut words: Vec<String> = Vec::new();
@@ -107,6 +113,5 @@ fn expected(e: &Error<Rule>) -> Vec<String> {
         }
     }
     words.sort_by_key(|w| w.starts_with('`'));
-    words.truncate(8);
     words
 }

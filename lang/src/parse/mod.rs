@@ -1,5 +1,6 @@
 //! Text to syntax tree. The grammar is `grammar.pest`; errors recover at the next item.
 
+mod advice;
 mod behaviour;
 mod cursor;
 mod expr;
@@ -79,10 +80,10 @@ impl Builder {
                 }
                 Rule::import => tree.imports.push(self.import(pair)),
                 Rule::item => {
-                    if let Some(inner) = pair.into_inner().find(|p| p.as_rule() != Rule::COMMENT) {
-                        if let Some(item) = self.item(inner) {
-                            tree.items.push(item);
-                        }
+                    if let Some(inner) = pair.into_inner().find(|p| p.as_rule() != Rule::COMMENT)
+                        && let Some(item) = self.item(inner)
+                    {
+                        tree.items.push(item);
                     }
                 }
                 Rule::junk => self.junk(&pair),

@@ -14,6 +14,9 @@ enum Given<'e> {
     Written(&'e Arg),
 }
 
+/// Arguments of a component model by name, and the type that the model delivers.
+type ModelArguments = (Vec<(Name, GExpr)>, Option<Type>);
+
 impl Checker<'_> {
     /// `f(args)`.
     pub(super) fn call(&mut self, f: &Ident, args: &[Arg], span: Span, want: Option<&Type>) -> Option<GExpr> {
@@ -72,10 +75,10 @@ impl Checker<'_> {
             }
             _ => {}
         }
-        if let Some(i) = self.params.iter().position(|(n, _, _)| *n == f.name) {
-            if let Some(interface) = self.services.get(&(i as u32)).cloned() {
-                return self.service(i as u32, &interface, f, given, span);
-            }
+        if let Some(i) = self.params.iter().position(|(n, _, _)| *n == f.name)
+            && let Some(interface) = self.services.get(&(i as u32)).cloned()
+        {
+            return self.service(i as u32, &interface, f, given, span);
         }
         if self.decls.functions.contains_key(&f.name) {
             return self.user_function(f, given, span);
@@ -283,17 +286,18 @@ impl Checker<'_> {
             return self.coerce(e, t);
         }
         if pattern.matches(&e.ty, bindings) {
-            if let Some(t) = pattern.instantiate(bindings) {
-                if t != e.ty && !matches!(t, Type::List(..)) {
-                    return self.coerce(e, &t);
-                }
+            if let Some(t) = pattern.instantiate(bindings)
+                && t != e.ty
+                && !matches!(t, Type::List(..))
+            {
+                return self.coerce(e, &t);
             }
             return Some(e);
         }
-        if let Some(t) = pattern.instantiate(bindings) {
-            if t != e.ty {
-                return self.coerce(e, &t);
-            }
+        if let Some(t) = pattern.instantiate(bindings)
+            && t != e.ty
+        {
+            return self.coerce(e, &t);
         }
         let d = match &e.ty {
             Type::Option(_) if !matches!(pattern, Pattern::Option(_) | Pattern::Var(_)) => Diagnostic::error(code::ABSENCE, "this value may be absent")
@@ -302,7 +306,7 @@ impl Checker<'_> {
             t if frames(t).into_iter().any(|t| pattern.matches(&t, &mut bindings.clone())) => {
                 Diagnostic::error(code::FRAMES, format!("`{name}` of `{}` is in another frame", f.name))
                     .at(e.span, e.ty.to_string())
-                    .hint(form.to_string())
+                    .hint(format!("change frames with `place`, `from_body` or `to_body`; {form}"))
             }
             _ => Diagnostic::error(code::MISMATCH, format!("`{name}` of `{}` cannot be {}", f.name, e.ty)).at(e.span, e.ty.to_string()).hint(form.to_string()),
         };
@@ -317,27 +321,27 @@ impl Checker<'_> {
         model: &Ident,
         args: &[Arg],
         span: Span,
-    ) -> Option<(Vec<(Name, GExpr)>, Option<Type>)> {
+    ) -> Option<ModelArguments> {
         let given = args.iter().map(Given::Written).collect();
         let (args, mut bindings) = self.bind_arguments(s, model, given, span, None)?;
-        if let Pattern::List(_, n) = &s.result {
-            if let Some((_, e)) = args.iter().find(|(name, _)| **name == **n) {
-                let capacity = match &e.ty {
-                    Type::List(_, n) => Some(*n),
-                    _ => match self.fold_constant(e, "the number of items")? {
-                        Value::Int(n) if (1..=4096).contains(&n) => Some(n as u32),
-                        _ => {
-                            self.report(
-                                Diagnostic::error(code::RANGE, "a list of that many items")
-                                    .at(e.span, "1 to 4096 are possible")
-                                    .hint("choose a number in that range"),
-                            );
-                            return None;
-                        }
-                    },
-                };
-                bindings.capacities.extend(capacity.map(|c| (n.clone(), c)));
-            }
+        if let Pattern::List(_, n) = &s.result
+            && let Some((_, e)) = args.iter().find(|(name, _)| **name == **n)
+        {
+            let capacity = match &e.ty {
+                Type::List(_, n) => Some(*n),
+                _ => match self.fold_constant(e, "the number of items")? {
+                    Value::Int(n) if (1..=4096).contains(&n) => Some(n as u32),
+                    _ => {
+                        self.report(
+                            Diagnostic::error(code::RANGE, "a list of that many items")
+                                .at(e.span, "1 to 4096 are possible")
+                                .hint("choose a number in that range"),
+                        );
+                        return None;
+                    }
+                },
+            };
+            bindings.capacities.extend(capacity.map(|c| (n.clone(), c)));
         }
         let ty = s.result.instantiate(&bindings);
         Some((args, ty))
@@ -437,16 +441,16 @@ impl Checker<'_> {
         };
         let (op, ty, form) = match (&*f.name, args.as_slice()) {
             ("sqrt", [x]) => {
-                (Op::Sqrt, typing::sqrt(&x.ty), "sqrt(x): the dimension of `x` must be a square")
+                (Op::Sqrt, typing::sqrt(&x.ty), "`sqrt(x)`: the dimension of x must be a square, such as m2")
             }
-            ("dot", [a, b]) => (Op::Dot, typing::dot(&a.ty, &b.ty), "dot(a, b): two vectors of one frame"),
+            ("dot", [a, b]) => (Op::Dot, typing::dot(&a.ty, &b.ty), "`dot(a, b)`: two vectors of one frame"),
             ("transpose", [m]) => {
-                (Op::Transpose, matrix(&m.ty).map(|(r, c)| Type::Matrix(c, r)), "transpose(m): a matrix")
+                (Op::Transpose, matrix(&m.ty).map(|(r, c)| Type::Matrix(c, r)), "`transpose(m)`: a matrix")
             }
             ("inverse", [m]) => (
                 Op::Inverse,
                 matrix(&m.ty).filter(|(r, c)| r == c).map(|(r, c)| Type::Matrix(r, c).optional()),
-                "inverse(m): a square matrix",
+                "`inverse(m)`: a square matrix",
             ),
             ("item", [m, r, c]) => {
                 let index = |e: &GExpr, n: u8| match e.as_const() {
@@ -463,7 +467,7 @@ impl Checker<'_> {
                     None => (
                         Op::Transpose,
                         None,
-                        "item(m, row, column): a matrix and two constants, counted from 0",
+                        "`item(m, row, column)`: a matrix and two constants, counted from 0",
                     ),
                 }
             }
@@ -480,7 +484,7 @@ impl Checker<'_> {
                     }
                     return Some(GExpr::new(Op::MakeMatrix, items, Type::Matrix(r as u8, c as u8), span));
                 }
-                (Op::Transpose, None, "matrix([[a, b], [c, d]]): rows of equal length, at most 8 × 8")
+                (Op::Transpose, None, "`matrix([[a, b], [c, d]])`: rows of equal length, at most 8 × 8")
             }
             (name, _) => {
                 let form = match name {
@@ -505,7 +509,7 @@ impl Checker<'_> {
                 for a in &args {
                     d = d.at(a.span, a.ty.to_string());
                 }
-                self.report(d.hint(format!("write `{form}`")));
+                self.report(d.hint(format!("write {form}")));
                 None
             }
         }

@@ -184,13 +184,13 @@ impl Checker<'_> {
             (x, self.expr(b, w.as_ref()))
         };
         let (x, y) = (x?, y?);
-        if op == Or {
-            if let Type::Option(inner) = x.ty.clone() {
-                let y = self.coerce(y, &inner)?;
-                let local = self.body.local(&inner);
-                let bound = GExpr::new(Op::Local(local), Vec::new(), (*inner).clone(), x.span);
-                return Some(GExpr::new(Op::IfSome { local, reason: None }, vec![x, bound, y], *inner, span));
-            }
+        if op == Or
+            && let Type::Option(inner) = x.ty.clone()
+        {
+            let y = self.coerce(y, &inner)?;
+            let local = self.body.local(&inner);
+            let bound = GExpr::new(Op::Local(local), Vec::new(), (*inner).clone(), x.span);
+            return Some(GExpr::new(Op::IfSome { local, reason: None }, vec![x, bound, y], *inner, span));
         }
         match typing::binary(op, &x.ty, &y.ty) {
             Some(ty) => Some(GExpr::new(Op::Binary(op), vec![x, y], ty, span)),

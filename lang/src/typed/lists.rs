@@ -127,9 +127,12 @@ impl Checker<'_> {
 
     fn lambda_wanted<T>(&mut self, name: &Ident, form: &str, span: Span) -> Option<T> {
         self.report(
-            Diagnostic::error(code::ARGUMENTS, format!("`{}` is given what to do with an item", name.name))
-                .at(span, "no such argument")
-                .hint(format!("write `list.{}({form})`", name.name)),
+            Diagnostic::error(
+                code::ARGUMENTS,
+                format!("`{}` must be told what to do with an item", name.name),
+            )
+            .at(span, "no such argument")
+            .hint(format!("write `list.{}({form})`", name.name)),
         );
         None
     }

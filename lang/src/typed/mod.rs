@@ -228,12 +228,12 @@ impl<'a> Checker<'a> {
 
     fn mismatch(&self, value: &Expr, want: &Type) -> Diagnostic {
         let have = &value.ty;
-        if let Type::Option(inner) = have {
-            if **inner == *want {
-                return Diagnostic::error(code::ABSENCE, "this value may be absent")
+        if let Type::Option(inner) = have
+            && **inner == *want
+        {
+            return Diagnostic::error(code::ABSENCE, "this value may be absent")
                     .at(value.span, format!("{have}, but {want} is wanted"))
                     .hint("give a value for absence with `or`, or take both ways with `match … { some(x) => … none(why) => … }`");
-            }
         }
         if same_but_frame(have, want) {
             return Diagnostic::error(code::FRAMES, "this value is in another frame")
@@ -258,6 +258,16 @@ impl<'a> Checker<'a> {
             (Type::List(..), Type::List(_, n)) => {
                 d.hint(format!("lists here hold up to {n} items; declare the same capacity on both sides"))
             }
+            (Type::Quantity(_), Type::Twist) => {
+                d.hint("a twist is made with `twist(forward)` or `twist(forward, turn: …)`")
+            }
+            (Type::Int | Type::Quantity(_), Type::Bool) => {
+                d.hint("compare it with something, for example `> 0`")
+            }
+            (Type::Quantity(dim), Type::Int) if *dim == soifra_graph::Dim::NONE => {
+                d.hint("declare a `Number` where it goes, or keep to whole numbers")
+            }
+            (Type::Quantity(_), Type::Int) => d.hint("write a whole number without a unit"),
             _ => d.hint("change the value, or the type that is declared"),
         }
     }

@@ -190,10 +190,10 @@ impl<'a> Checker<'a> {
             Some(Type::Option(t)) => Some(&**t),
             w => w,
         };
-        if let Some(Type::Enum(e)) = want {
-            if self.types.enums.get(e).is_some_and(|e| e.variants.contains(name)) {
-                return make(e);
-            }
+        if let Some(Type::Enum(e)) = want
+            && self.types.enums.get(e).is_some_and(|e| e.variants.contains(name))
+        {
+            return make(e);
         }
         let with: Vec<Name> =
             self.types.enums.values().filter(|e| e.variants.contains(name)).map(|e| e.name.clone()).collect();
@@ -306,15 +306,15 @@ impl<'a> Checker<'a> {
     }
 
     fn of_subject(&mut self, subject: Option<u32>, middle: &str, field: &Ident, span: Span) -> Option<GExpr> {
-        if let Some(group) = subject {
-            if self.robots[group as usize].1 {
-                self.report(
-                    Diagnostic::error(code::UNKNOWN_FIELD, "an array of robots has no single value")
-                        .at(span, "which one of them?")
-                        .hint("quantify: `each robot: …`, `mean robot: …`"),
-                );
-                return None;
-            }
+        if let Some(group) = subject
+            && self.robots[group as usize].1
+        {
+            self.report(
+                Diagnostic::error(code::UNKNOWN_FIELD, "an array of robots has no single value")
+                    .at(span, "which one of them?")
+                    .hint("quantify: `each robot: …`, `mean robot: …`"),
+            );
+            return None;
         }
         match middle {
             "truth" => self.truth(subject, field, span),

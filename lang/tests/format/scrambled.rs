@@ -57,7 +57,6 @@ proptest! {
     }
 
     #[test]
-#[ignore = "known defect: docs/status.md, 2026-11-22"]
     fn comments_anywhere_are_kept(places in prop::collection::vec((any::<prop::sample::Index>(), 0..4usize), 1..12)) {
         const COMMENTS: [&str; 4] = [" // note\n", "\n// note\n", " /* note */ ", "\n/* note\n * on */\n"];
         for (name, text) in super::sources() {

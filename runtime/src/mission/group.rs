@@ -39,7 +39,7 @@ pub(super) fn group(c: &mut Compiler<'_>, graph: &Graph, g: &RobotGroup) -> Comp
         }
         for port in &agent.sensors {
             let fits = |s: &&Component| s.name == port.name && s.ty.as_ref() == Some(&port.ty);
-            let Some(s) = sensors.iter().position(|s| fits(s)) else {
+            let Some(s) = sensors.iter().position(fits) else {
                 return damaged(
                     port.span,
                     format!("platform `{}` has no such sensor `{}`", platform.name, port.name),
