@@ -56,7 +56,8 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     let decls = decls::Decls::collect(&program, &mut diagnostics);
     let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let mut later = Vec::new();
-    let choice = lower::Choice { platform: options.platform.clone(), mission: options.mission.clone() };
+    let choice =
+        lower::Choice { platform: options.platform.clone(), alternative: 0, mission: options.mission.clone() };
     let mut graph = lower::lower(&program, &decls, &choice, &mut later);
     if syntax_failed {
         // Names that an unreadable item would have declared are not the user's second mistake.
@@ -72,6 +73,10 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     let tests = test_case::collect(&decls, graph.as_ref(), &mut diagnostics);
     if let Some(g) = &graph {
         diagnostics.extend(verify(g));
+        if options.platform.is_none() {
+            let others = alternatives(&program, &decls, &choice, g, &diagnostics);
+            diagnostics.extend(others);
+        }
     }
     diagnostics.sort_by(|a, b| (a.position(), a.code, &a.title).cmp(&(b.position(), b.code, &b.title)));
     diagnostics.dedup();
@@ -80,4 +85,35 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     }
     let sources = std::mem::take(&mut program.sources);
     Checked { graph, diagnostics, sources, tests }
+}
+
+/// What is wrong only when robots are what `any of […]` names after the first.
+fn alternatives(
+    program: &modules::Program,
+    decls: &decls::Decls<'_>,
+    first: &lower::Choice,
+    graph: &Graph,
+    known: &[Diagnostic],
+) -> Vec<Diagnostic> {
+    let most = graph.robots.iter().map(|r| r.alternatives.len()).max().unwrap_or(0);
+    let mut found: Vec<Diagnostic> = Vec::new();
+    for alternative in 1..=most {
+        let choice = lower::Choice { alternative, ..first.clone() };
+        let mut here = Vec::new();
+        if let Some(g) = lower::lower(program, decls, &choice, &mut here) {
+            here.extend(verify(&g));
+        }
+        for mut d in here {
+            if known.contains(&d) || d.severity != Severity::Error {
+                continue;
+            }
+            let named: Vec<&str> =
+                graph.robots.iter().filter_map(|r| Some(&**r.alternatives.get(alternative - 1)?)).collect();
+            if !named.iter().any(|n| d.title.contains(*n)) {
+                d.title = format!("as `{}`: {}", named.join("`, `"), d.title);
+            }
+            found.push(d);
+        }
+    }
+    found
 }

@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 pub struct Choice {
     /// Platform for every robot.
     pub platform: Option<String>,
+    /// Which platform of `any of […]`, counted from 0; robots that name fewer keep their first.
+    pub alternative: usize,
     /// Mission, when a file has several; the first otherwise.
     pub mission: Option<String>,
 }
@@ -339,7 +341,7 @@ impl<'a> Checker<'a> {
         );
         for member in &m.members {
             if let M::Robot(r) = member {
-                let Some(g) = self.robot(r, replaced.as_ref(), &index, &mut platforms) else {
+                let Some(g) = self.robot(r, choice_of(r, replaced.as_ref(), choice.alternative), &index, &mut platforms) else {
                     self.poison(&r.name.name);
                     continue;
                 };
@@ -601,4 +603,13 @@ impl<'a> Checker<'a> {
             None => Some(None),
         }
     }
+}
+
+/// The platform a robot takes.
+fn choice_of<'r>(
+    r: &'r ast::Robot,
+    replaced: Option<&'r ast::Ident>,
+    alternative: usize,
+) -> Option<&'r ast::Ident> {
+    replaced.or_else(|| r.platforms.get(alternative).or_else(|| r.platforms.first()))
 }

@@ -40,11 +40,11 @@ impl<'a> Checker<'a> {
         Platform { name: profile.name.name.clone(), components, at: profile.name.span }
     }
 
-    /// Lowers a robot; `platform` replaces the one it names.
+    /// Lowers a robot on the platform `chosen`.
     pub fn robot(
         &mut self,
         r: &'a ast::Robot,
-        platform: Option<&ast::Ident>,
+        chosen: Option<&ast::Ident>,
         agents: &BTreeMap<Name, u32>,
         done: &mut Vec<Platform>,
     ) -> Option<RobotGroup> {
@@ -52,7 +52,7 @@ impl<'a> Checker<'a> {
             Some(c) => Some(self.in_body(Body::new(Place::Start), |s| s.typed(c, &Type::Int)).0?),
             None => None,
         };
-        let chosen = platform.or_else(|| r.platforms.first())?;
+        let chosen = chosen?;
         let index = self.platform(chosen, done);
         for other in &r.platforms {
             if other.name != chosen.name && !self.decls.platforms.contains_key(&other.name) {
