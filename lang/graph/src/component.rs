@@ -115,7 +115,7 @@ const TABLE: &[(&str, &str, &str)] = &[
     (
         "mover",
         "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, keep_out: Length? = none, material: Text = \"plaster\")",
-        "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds; given `keep_out`, its rim stays that far from every robot's start and target",
+        "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds; given `keep_out`, its rim begins and stays that far from every robot's start and target",
     ),
     (
         "material",

@@ -142,10 +142,25 @@ impl KeepOut {
         grid.fill(discs.iter().map(|(c, r)| Aabb::around(*c, *r)));
         KeepOut { discs, grid }
     }
+
+    /// Where a wanderer begins that would begin at `at`: on the rim of the disc it would be in, the nearest
+    /// place; from the centre of one in direction `heading`. Among discs that overlap it may stay inside.
+    fn pushed_out(&self, mut at: Vec2, heading: f64) -> Vec2 {
+        for _ in 0..self.discs.len().min(8) {
+            let inside = self.discs.iter().find(|(c, r)| norm(sub(at, *c)) < *r);
+            let Some((center, radius)) = inside else { break };
+            let out = sub(at, *center);
+            let out =
+                if norm(out) > TOUCHING { out } else { [libm::cos(heading), libm::sin(heading)] };
+            at = along(*center, out, (radius + TOUCHING) / norm(out));
+        }
+        at
+    }
 }
 
 /// Walks straight, draws a new heading at every turn period, and is reflected by the bounds of the world
-/// and by keep-out discs. Where it is already beyond one of these it walks on until it is out.
+/// and by keep-out discs; it begins outside of these. Where it is beyond one all the same, pushed by a robot
+/// or among discs that overlap, it walks on until it is out.
 #[derive(Debug)]
 pub struct Wanderer {
     heading: f64,
@@ -184,7 +199,7 @@ impl Wanderer {
         });
         let speed = args.at_least_zero("speed")?;
         let turn_period = args.period("turn_period")?.0.max(SHORTEST);
-        let place = Place { at: [x, y], heading, path: 0.0 };
+        let place = Place { at: keep_out.pushed_out([x, y], heading), heading, path: 0.0 };
         Ok((Wanderer { heading, speed, turn_period, bounds, keep_out, noise }, place))
     }
 

@@ -69,17 +69,19 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn a_wanderer_stays_in_and_keeps_out(heading in -3.0f64..3.0, speed in 0.1f64..5.0, period in 0.05f64..5.0) {
+    fn a_wanderer_stays_in_and_keeps_out(
+        heading in -3.0f64..3.0, speed in 0.1f64..5.0, period in 0.05f64..5.0, x in -1.5f64..1.5, y in -1.5f64..1.5,
+    ) {
         let world = vec![
             part("bounds", "", "rectangle", &[("low", at(-2.0, -2.0)), ("high", at(2.0, 2.0))]),
             part("mover", "fly", "wanderer", &[
-                ("radius", num(0.2)), ("at", at(0.0, 0.0)), ("heading", num(heading)), ("speed", num(speed)),
+                ("radius", num(0.2)), ("at", at(x, y)), ("heading", num(heading)), ("speed", num(speed)),
                 ("turn_period", num(period)), ("keep_out", some(0.3)),
             ]),
         ];
         let mut rig = rig(world, &[[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 1.3, 0.0]]);
         let mut walked = 0.0;
-        let mut last = [0.0, 0.0];
+        let mut last = mover(&rig);
         for i in 0..2000 {
             rig.poll(0.01 * f64::from(i));
             let [x, y] = mover(&rig);
