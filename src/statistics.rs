@@ -28,7 +28,8 @@ impl Summary {
         if n == 0 {
             return Summary { mean: None, sd: None, min: None, median: None, max: None, n };
         }
-        let mean = v.iter().sum::<f64>() / n as f64;
+        // From the first value, so that equal values have exactly their mean and no deviation.
+        let mean = v[0] + v.iter().map(|x| x - v[0]).sum::<f64>() / n as f64;
         let squares: f64 = v.iter().map(|x| (x - mean) * (x - mean)).sum();
         let sd = if n > 1 { (squares / (n - 1) as f64).sqrt() } else { 0.0 };
         v.sort_by(f64::total_cmp);
@@ -55,5 +56,7 @@ mod tests {
         assert!((s.sd.unwrap() - (32.0f64 / 7.0).sqrt()).abs() < 1e-15);
         assert_eq!(Summary::of([]).mean, None);
         assert_eq!(Summary::of([3.0]).sd, Some(0.0));
+        let same = Summary::of([10.1; 20]);
+        assert_eq!((same.mean, same.sd), (Some(10.1), Some(0.0)));
     }
 }

@@ -56,6 +56,7 @@ codes! {
     UNBOUNDED = "S0510", "An activation has no acceptable bound";
     TIMING = "S0511", "Declared timing contradicts itself";
     NO_EFFECT = "S0512", "A unit without effect";
+    FULL_LIST = "S0513", "An item for a list that is full";
 
     TRUTH = "S0601", "Truth in a behaviour";
     FRAMES = "S0602", "Frames are mixed";

@@ -56,8 +56,11 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     let decls = decls::Decls::collect(&program, &mut diagnostics);
     let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let mut later = Vec::new();
-    let choice =
-        lower::Choice { platform: options.platform.clone(), alternative: 0, mission: options.mission.clone() };
+    let choice = lower::Choice {
+        platform: options.platform.clone(),
+        alternative: 0,
+        mission: options.mission.clone(),
+    };
     let mut graph = lower::lower(&program, &decls, &choice, &mut later);
     if syntax_failed {
         // Names that an unreadable item would have declared are not the user's second mistake.

@@ -5,24 +5,24 @@ use crate::{
 };
 use clap::{Args, ValueEnum, ValueHint};
 use soifra_graph::Graph;
+use std::path::Path;
 
 /// Arguments.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     mission: Mission,
-    /// The form
-    #[arg(long, value_enum, default_value_t)]
-    format: Form,
+    /// The form [default: by the ending of the file to write, else mermaid]
+    #[arg(long, value_enum)]
+    format: Option<Form>,
     /// Write to this file instead of standard output
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Option<String>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Form {
     /// Flowchart for Markdown pages
-    #[default]
     Mermaid,
     /// For Graphviz
     Dot,
@@ -37,7 +37,18 @@ enum Form {
 impl Arguments {
     /// Whether standard output carries a JSON document.
     pub fn document(&self) -> Format {
-        if self.format == Form::Json && self.output.is_none() { Format::Json } else { Format::Human }
+        if self.form() == Form::Json && self.output.is_none() { Format::Json } else { Format::Human }
+    }
+
+    fn form(&self) -> Form {
+        let ending = self.output.as_deref().and_then(|p| Path::new(p).extension()?.to_str());
+        self.format.unwrap_or(match ending {
+            Some("dot" | "gv") => Form::Dot,
+            Some("svg") => Form::Svg,
+            Some("yaml" | "yml") => Form::Yaml,
+            Some("json") => Form::Json,
+            _ => Form::Mermaid,
+        })
     }
 }
 
@@ -45,7 +56,7 @@ impl Arguments {
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let compiled = compile::compile(&a.mission.file, a.mission.platform.as_deref())?;
     compiled.findings.print();
-    let text = render(&compiled.graph, a.format).map_err(|e| {
+    let text = render(&compiled.graph, a.form()).map_err(|e| {
         Refusal::about(&a.mission.file, "S9999", "the graph cannot be written", e, "please report this")
             .exit(Exit::Internal)
     })?;

@@ -156,6 +156,7 @@ impl Run {
             ("success".to_string(), truth(self.outcome == "success")),
             ("sim_time_s".to_string(), self.sim_time_s),
             ("collisions".to_string(), Some(f64::from(self.collisions))),
+            ("collided".to_string(), truth(self.collisions > 0)),
         ];
         if self.robots.len() <= ROBOTS {
             for b in &self.robots {

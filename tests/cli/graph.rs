@@ -15,6 +15,11 @@ fn every_form_shows_every_part() {
         for part in ["driver", "pose", "base", "deliver", "porter", "drive every 100 ms"] {
             assert!(text.contains(part), "{form} lacks {part}: {text}");
         }
+        // The ending of the file says it too.
+        let named = dir.join(if form == "mermaid" { "g.md".into() } else { format!("g.{form}") });
+        let o = soifra(&["graph", &path, "-o", &named.to_string_lossy()]);
+        assert_eq!(code(&o), 0, "{}", stderr(&o));
+        assert_eq!(std::fs::read_to_string(&named).expect("a graph"), text);
     }
 }
 

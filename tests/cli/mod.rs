@@ -7,6 +7,7 @@ mod graph;
 mod run;
 mod sweep;
 mod test;
+mod tutorial;
 
 use crate::support::{code, file, folder, soifra, stderr};
 use std::path::Path;

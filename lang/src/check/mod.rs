@@ -10,6 +10,7 @@ mod effects;
 mod events;
 mod goals;
 mod knowledge;
+mod lists;
 mod placement;
 mod ranges;
 mod reachability;
@@ -37,6 +38,7 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(events::check(graph));
     out.extend(timing::check(graph));
     out.extend(effects::check(graph));
+    out.extend(lists::check(graph));
     out.extend(bounds::check(graph));
     let ranges = ranges::check(graph);
     // Where things stand means nothing while their sizes are impossible.

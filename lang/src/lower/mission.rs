@@ -341,7 +341,12 @@ impl<'a> Checker<'a> {
         );
         for member in &m.members {
             if let M::Robot(r) = member {
-                let Some(g) = self.robot(r, choice_of(r, replaced.as_ref(), choice.alternative), &index, &mut platforms) else {
+                let Some(g) = self.robot(
+                    r,
+                    choice_of(r, replaced.as_ref(), choice.alternative),
+                    &index,
+                    &mut platforms,
+                ) else {
                     self.poison(&r.name.name);
                     continue;
                 };

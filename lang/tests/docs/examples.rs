@@ -1,4 +1,4 @@
-//! Every example of the reference does what is said of it.
+//! Every example of the reference and of the tutorial does what is said of it.
 
 use super::{
     Library,
@@ -10,7 +10,7 @@ use soifra_graph::{Diagnostic, Graph, Severity, StmtKind, UnitKind, span::Source
 use soifra_lang::{CheckOptions, Checked, check, format};
 use std::fs;
 
-const PATHS: &[&str] = &["docs/language.md"];
+const PATHS: &[&str] = &["docs/language.md", "docs/tutorial.md"];
 
 fn run(text: &str) -> Checked {
     check("missions/example.soi", text, &mut Library, &CheckOptions::default())
@@ -47,6 +47,8 @@ fn complaints(c: &Checked, block: &Block, line: usize, whole: bool) -> Vec<Strin
 fn examples_are_as_they_say() {
     let mut wrong: Vec<String> = Vec::new();
     let mut count = 0;
+    // Parts of a file stand in the reference's context.
+    let reference = read(PATHS[0]);
     for path in PATHS {
         let text = read(path);
         for b in blocks::of(&text, "soi") {
@@ -55,9 +57,9 @@ fn examples_are_as_they_say() {
                 |list: Vec<String>| wrong.extend(list.iter().map(|w| format!("{path}:{}: {w}", b.line)));
             match b.kind() {
                 "" | "context" => complain(complaints(&run(&b.text), &b, b.line, true)),
-                "expr" => lines(&text, &b, &mut complain),
+                "expr" => lines(&reference, &b, &mut complain),
                 _ => {
-                    let (file, before) = wrap(&text, &b, &b.text);
+                    let (file, before) = wrap(&reference, &b, &b.text);
                     complain(complaints(&run(&file), &b, (b.line + 1).saturating_sub(before), false));
                 }
             }

@@ -150,8 +150,7 @@ impl KeepOut {
             let inside = self.discs.iter().find(|(c, r)| norm(sub(at, *c)) < *r);
             let Some((center, radius)) = inside else { break };
             let out = sub(at, *center);
-            let out =
-                if norm(out) > TOUCHING { out } else { [libm::cos(heading), libm::sin(heading)] };
+            let out = if norm(out) > TOUCHING { out } else { [libm::cos(heading), libm::sin(heading)] };
             at = along(*center, out, (radius + TOUCHING) / norm(out));
         }
         at
