@@ -115,9 +115,12 @@ fn refuse(diagnostics: Vec<Diagnostic>, sources: Vec<Source>) -> Refusal {
     Refusal { findings: Findings { diagnostics, sources }, exit: Exit::WrongInput }
 }
 
+/// More threads than this help on no machine, and a system may refuse to start them.
+const MOST_THREADS: usize = 256;
+
 /// How many threads to use: as asked, else `RAYON_NUM_THREADS`, else one a core.
 pub fn threads(asked: Option<usize>) -> usize {
     let from_environment = || std::env::var("RAYON_NUM_THREADS").ok()?.trim().parse().ok().filter(|n| *n > 0);
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    asked.filter(|n| *n > 0).or_else(from_environment).unwrap_or_else(cores)
+    asked.filter(|n| *n > 0).or_else(from_environment).unwrap_or_else(cores).min(MOST_THREADS)
 }

@@ -1,5 +1,6 @@
 //! Angles, vectors, quaternions, poses, circles. Metres and radians; quaternions are x y z w.
 
+use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
 
 /// The same direction in (-π, π].
@@ -171,39 +172,20 @@ pub(super) fn first_contact(from: [f64; 3], motion: [f64; 3], center: [f64; 3], 
     (t <= 1.0).then_some(t)
 }
 
-/// The inverse of an n × n matrix into `out`, by Gauss-Jordan elimination with partial pivoting; false
-/// when a pivot is below 1e-13 of the largest entry.
+/// The inverse of an n × n matrix, row by row, into `out`; false when a pivot is below 1e-13 of the largest
+/// entry.
 pub(super) fn inverse(n: usize, matrix: &[f64], out: &mut [f64]) -> bool {
-    let mut m = [[0.0; 16]; 8];
     if n > 8 || matrix.len() < n * n || out.len() < n * n {
         return false;
     }
-    let mut largest = 0.0f64;
-    for (i, row) in m.iter_mut().enumerate().take(n) {
-        row[..n].copy_from_slice(&matrix[i * n..][..n]);
-        row[n + i] = 1.0;
-        largest = row[..n].iter().fold(largest, |l, x| l.max(x.abs()));
+    let m = DMatrix::from_row_slice(n, n, &matrix[..n * n]);
+    let limit = 1e-13 * m.amax();
+    let lu = m.lu();
+    if lu.u().diagonal().iter().any(|pivot| pivot.abs() <= limit) {
+        return false;
     }
-    for i in 0..n {
-        let best = (i..n).fold(i, |b, r| if m[r][i].abs() > m[b][i].abs() { r } else { b });
-        m.swap(i, best);
-        let pivot = m[i][i];
-        if pivot.abs() <= 1e-13 * largest {
-            return false;
-        }
-        for x in &mut m[i][..2 * n] {
-            *x /= pivot;
-        }
-        let row = m[i];
-        for (_, other) in m.iter_mut().enumerate().take(n).filter(|(r, _)| *r != i) {
-            let factor = other[i];
-            for (x, y) in other[..2 * n].iter_mut().zip(&row) {
-                *x -= factor * y;
-            }
-        }
-    }
-    for (i, row) in m.iter().enumerate().take(n) {
-        out[i * n..][..n].copy_from_slice(&row[n..2 * n]);
-    }
+    let Some(inverse) = lu.try_inverse() else { return false };
+    // Its columns are our rows.
+    out[..n * n].copy_from_slice(inverse.transpose().as_slice());
     true
 }
