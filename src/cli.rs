@@ -1,6 +1,6 @@
 //! The command line: what it takes, and which command does it.
 
-use crate::{commands, exit::Exit, output, output::Format, report::Refusal};
+use crate::{commands, compile, exit::Exit, output, output::Format, report::Refusal};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueHint, error::ErrorKind};
 use serde::Serialize;
 use std::ffi::OsString;
@@ -50,9 +50,19 @@ pub struct Mission {
     /// Mission source (.soi) or behaviour graph (.yaml, .json)
     #[arg(value_hint = ValueHint::FilePath)]
     pub file: String,
+    /// The mission that is meant, in a file with several [default: the first]
+    #[arg(long, value_name = "NAME")]
+    pub mission: Option<String>,
     /// Run every robot on this platform profile
     #[arg(long, value_name = "PROFILE")]
     pub platform: Option<String>,
+}
+
+impl Mission {
+    /// Compiles it.
+    pub fn compile(&self) -> Result<compile::Compiled, Refusal> {
+        compile::compile_mission(&self.file, self.platform.as_deref(), self.mission.as_deref())
+    }
 }
 
 /// The grammar of the command line, for completions.

@@ -18,6 +18,11 @@ const fn page(code: &'static str, title: &'static str, text: &'static str) -> Pa
 /// Every page of the command line, by code.
 pub const PAGES: &[Page] = &[
     page(
+        "S0901",
+        "A value at the start cannot be used",
+        "A value of the scene cannot be worked out, or lies outside what is possible, with the parameters and the seed of this run: a chance above 1, a negative number of robots, a division by zero. The report names the thing and its argument. With the default parameters `soifra check` finds most of these; look at what `--set` gave.",
+    ),
+    page(
         "S9001",
         "The file cannot be read",
         "There is no such file, or it may not be opened. Paths are taken from the current folder; the report names the nearest file name in the same folder.",

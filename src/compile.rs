@@ -1,10 +1,10 @@
 //! From what the user named to a checked graph: a source is compiled, a graph file is loaded and verified.
 
 use crate::{
-    files, graph_file,
+    files, graph_file, relative,
     report::{Findings, Refusal},
 };
-use soifra_graph::{Diagnostic, Graph, Span, Value, did_you_mean};
+use soifra_graph::{Diagnostic, Graph, Severity, Span, Value, did_you_mean};
 use soifra_lang::{CheckOptions, TestCase};
 
 /// A graph that passed every check, with the warnings and tests that came along.
@@ -21,6 +21,8 @@ pub struct Compiled {
 pub struct Checked {
     /// The graph, when there is a mission.
     pub graph: Option<Graph>,
+    /// Names of the file's missions.
+    pub missions: Vec<String>,
     /// Warnings.
     pub findings: Findings,
     /// `test` blocks.
@@ -39,6 +41,14 @@ pub fn compile_mission(
     mission: Option<&str>,
 ) -> Result<Compiled, Refusal> {
     let checked = check(path, platform, mission)?;
+    if let (None, Some(name)) = (&checked.graph, mission) {
+        let hint = match did_you_mean(name, checked.missions.iter().map(String::as_str)) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("its missions are {}", checked.missions.join(", ")),
+        };
+        let title = format!("there is no mission `{name}`");
+        return Err(Refusal::about(&format!("--mission {name}"), "S0201", title, "not in this file", &hint));
+    }
     match checked.graph {
         Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
         None => Err(Refusal::about(
@@ -64,12 +74,15 @@ pub fn check(path: &str, platform: Option<&str>, mission: Option<&str>) -> Resul
     }
     let options =
         CheckOptions { platform: platform.map(str::to_string), mission: mission.map(str::to_string) };
-    let checked = soifra_lang::check(path, &text, &mut files::Loader, &options);
+    let mut checked = soifra_lang::check(path, &text, &mut files::Loader, &options);
+    if let Some(graph) = &mut checked.graph {
+        relative::name_from(path, &mut graph.sources);
+    }
     let findings = Findings { diagnostics: checked.diagnostics, sources: checked.sources };
     if findings.errors() > 0 {
         return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
     }
-    Ok(Checked { graph: checked.graph, findings, tests: checked.tests })
+    Ok(Checked { graph: checked.graph, missions: checked.missions, findings, tests: checked.tests })
 }
 
 fn load(path: &str, text: &str, platform: Option<&str>) -> Result<Checked, Refusal> {
@@ -87,7 +100,10 @@ fn load(path: &str, text: &str, platform: Option<&str>) -> Result<Checked, Refus
     if findings.errors() > 0 {
         return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
     }
-    Ok(Checked { graph: Some(graph), findings, tests: Vec::new() })
+    // What the runtime asks of a graph besides: a source always gives it, a file need not.
+    crate::execute::load(graph.clone())?;
+    let missions = vec![graph.name.to_string()];
+    Ok(Checked { graph: Some(graph), missions, findings, tests: Vec::new() })
 }
 
 /// A parameter as `--set` gives it: `name=value`.
@@ -109,6 +125,24 @@ pub fn split_setting(text: &str) -> Result<(String, String), Refusal> {
 /// The values of `--set` for the parameters of a graph: index in [`Graph::params`], value.
 pub fn settings(graph: &Graph, sets: &[(String, String)]) -> Result<Vec<(usize, Value)>, Refusal> {
     sets.iter().map(|(name, text)| setting(graph, name, text)).collect()
+}
+
+/// Refuses values with which the mission would not pass its checks, as places that overlap.
+pub fn verify_with(graph: &Graph, values: &[(usize, Value)]) -> Result<(), Refusal> {
+    if values.is_empty() {
+        return Ok(());
+    }
+    let mut graph = graph.clone();
+    for (index, value) in values {
+        graph.params[*index].default = value.clone();
+    }
+    let mut diagnostics = soifra_lang::verify(&graph);
+    diagnostics.retain(|d| d.severity == Severity::Error);
+    let findings = Findings { diagnostics, sources: graph.sources.clone() };
+    match findings.errors() {
+        0 => Ok(()),
+        _ => Err(Refusal { findings, exit: crate::exit::Exit::WrongInput }),
+    }
 }
 
 fn setting(graph: &Graph, name: &str, text: &str) -> Result<(usize, Value), Refusal> {

@@ -100,6 +100,20 @@ pub fn write(path: &str, bytes: &[u8]) -> Result<(), Refusal> {
     make_folder(path).and_then(|()| fs::write(path, bytes)).map_err(|e| unwritable(path, &e))
 }
 
+/// Refuses to write what was made of a file over that file.
+pub fn keep_apart(input: &str, output: &str) -> Result<(), Refusal> {
+    match (fs::canonicalize(input), fs::canonicalize(output)) {
+        (Ok(a), Ok(b)) if a == b => Err(Refusal::about(
+            output,
+            "S9012",
+            "the file cannot be written",
+            "it is the file that is read",
+            "name another file",
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Makes the folder of a file to be written.
 pub fn make_folder(path: &str) -> std::io::Result<()> {
     match Path::new(path).parent() {

@@ -17,6 +17,7 @@ pub mod interrupt;
 mod last_resort;
 pub mod output;
 pub mod plot;
+pub mod relative;
 pub mod report;
 pub mod seeds;
 pub mod statistics;

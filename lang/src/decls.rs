@@ -39,6 +39,11 @@ pub struct Decls<'a> {
 }
 
 impl<'a> Decls<'a> {
+    /// Missions of the file that is checked, in order.
+    pub fn root_missions(&self) -> impl Iterator<Item = &'a Mission> {
+        self.missions.iter().filter(|(file, _)| *file == 0).map(|(_, m)| *m)
+    }
+
     /// Collects the declarations of a program; second ones are reported.
     pub fn collect(program: &'a Program, errors: &mut Vec<Diagnostic>) -> Self {
         let mut d = Decls::default();

@@ -29,6 +29,8 @@ use soifra_graph::{Diagnostic, Graph, Severity, span::Source};
 pub struct Checked {
     /// The graph, when nothing stands in the way of running it.
     pub graph: Option<Graph>,
+    /// The file's missions, in order.
+    pub missions: Vec<String>,
     /// Every finding, by file and position; errors and warnings.
     pub diagnostics: Vec<Diagnostic>,
     /// Sources that spans refer to.
@@ -49,11 +51,19 @@ pub struct CheckOptions {
 /// Checks the file `path` with text `text` and everything it imports.
 ///
 /// A file without a mission is checked too; it gives no graph, and no error for lacking one: a file of
-/// agents or profiles is not wrong. Running it is refused by the caller.
+/// agents or profiles is not wrong. Running it is refused by the caller. So is a mission that is asked for and
+/// not there.
 pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOptions) -> Checked {
     let mut program = modules::Program::load(path, text, loader);
     let mut diagnostics = std::mem::take(&mut program.errors);
     let decls = decls::Decls::collect(&program, &mut diagnostics);
+    let missions: Vec<String> = decls.root_missions().map(|m| m.name.name.to_string()).collect();
+    if let Some(name) = &options.mission
+        && !decls.missions.iter().any(|(_, m)| *m.name.name == **name)
+    {
+        let sources = std::mem::take(&mut program.sources);
+        return Checked { graph: None, missions, diagnostics, sources, tests: Vec::new() };
+    }
     let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let mut later = Vec::new();
     let choice = lower::Choice {
@@ -81,13 +91,26 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
             diagnostics.extend(others);
         }
     }
+    if options.mission.is_none() && !syntax_failed {
+        for name in missions.iter().skip(1) {
+            let choice = lower::Choice { mission: Some(name.clone()), ..choice.clone() };
+            let mut here = Vec::new();
+            if let Some(g) = lower::lower(&program, &decls, &choice, &mut here) {
+                here.extend(verify(&g));
+                here.extend(alternatives(&program, &decls, &choice, &g, &here));
+            }
+            // What the missions share is told once.
+            here.retain(|d| !diagnostics.contains(d));
+            diagnostics.extend(here);
+        }
+    }
     diagnostics.sort_by(|a, b| (a.position(), a.code, &a.title).cmp(&(b.position(), b.code, &b.title)));
     diagnostics.dedup();
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
         graph = None;
     }
     let sources = std::mem::take(&mut program.sources);
-    Checked { graph, diagnostics, sources, tests }
+    Checked { graph, missions, diagnostics, sources, tests }
 }
 
 /// What is wrong only when robots are what `any of […]` names after the first.

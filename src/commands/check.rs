@@ -47,6 +47,7 @@ struct File {
     path: String,
     sound: bool,
     mission: Option<String>,
+    missions: Vec<String>,
     graph_digest: Option<String>,
     errors: usize,
     warnings: usize,
@@ -63,9 +64,9 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         diagnostics: Vec::new(),
     };
     for path in &a.files {
-        let (findings, sound, graph) = match compile::check(path, a.platform.as_deref(), None) {
-            Ok(c) => (c.findings, true, c.graph),
-            Err(r) => (r.findings, false, None),
+        let (findings, sound, graph, missions) = match compile::check(path, a.platform.as_deref(), None) {
+            Ok(c) => (c.findings, true, c.graph, c.missions),
+            Err(r) => (r.findings, false, None, Vec::new()),
         };
         findings.print();
         if !findings.diagnostics.is_empty() {
@@ -81,6 +82,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             path: path.clone(),
             sound,
             mission,
+            missions,
             graph_digest: digest,
             errors,
             warnings,
@@ -100,9 +102,10 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 }
 
 fn passed(d: &Document) -> String {
-    let line = |f: &File| match &f.mission {
-        Some(mission) => format!("{}: mission `{mission}` is sound\n", f.path),
-        None => format!("{}: sound; no mission in it\n", f.path),
+    let line = |f: &File| match f.missions.as_slice() {
+        [] => format!("{}: sound; no mission in it\n", f.path),
+        [one] => format!("{}: mission `{one}` is sound\n", f.path),
+        several => format!("{}: missions `{}` are sound\n", f.path, several.join("`, `")),
     };
     d.files.iter().map(line).collect()
 }

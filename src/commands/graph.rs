@@ -1,7 +1,7 @@
 //! `soifra graph`: the behaviour graph as a picture or as data.
 
 use crate::{
-    cli::Mission, compile, exit::Exit, files, graph_file, graph_view, output, output::Format, report::Refusal,
+    cli::Mission, exit::Exit, files, graph_file, graph_view, output, output::Format, report::Refusal,
 };
 use clap::{Args, ValueEnum, ValueHint};
 use soifra_graph::Graph;
@@ -54,14 +54,17 @@ impl Arguments {
 
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
-    let compiled = compile::compile(&a.mission.file, a.mission.platform.as_deref())?;
+    let compiled = a.mission.compile()?;
     compiled.findings.print();
     let text = render(&compiled.graph, a.form()).map_err(|e| {
         Refusal::about(&a.mission.file, "S9999", "the graph cannot be written", e, "please report this")
             .exit(Exit::Internal)
     })?;
     match &a.output {
-        Some(path) => files::write(path, text.as_bytes())?,
+        Some(path) => {
+            files::keep_apart(&a.mission.file, path)?;
+            files::write(path, text.as_bytes())?;
+        }
         None => output::print(&text)?,
     }
     Ok(Exit::Success)

@@ -4,7 +4,7 @@ use crate::{
     cli::Mission,
     compile, execute,
     exit::Exit,
-    graph_file, interrupt,
+    files, graph_file, interrupt,
     output::{self, Format},
     report::{
         JsonDiagnostic, Refusal,
@@ -73,10 +73,11 @@ struct Host {
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let stop = interrupt::flag();
-    let compiled = compile::compile(&a.mission.file, a.mission.platform.as_deref())?;
+    let compiled = a.mission.compile()?;
     compiled.findings.print();
     let sets = a.sets.iter().map(|s| compile::split_setting(s)).collect::<Result<Vec<_>, _>>()?;
     let values = compile::settings(&compiled.graph, &sets)?;
+    compile::verify_with(&compiled.graph, &values)?;
     let graph_digest = graph_file::digest(&compiled.graph);
     let threads = execute::threads(a.threads);
     let settings = execute::settings(&compiled.graph, a.seed, &values, threads);
@@ -91,6 +92,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let watch = Stopwatch::start();
     let (report, trace) = match path {
         Some(path) => {
+            files::keep_apart(&a.mission.file, &path)?;
             let (report, finished) = prepared.run_traced(&path, &stop)?;
             (report, Some(Trace { path, digest: finished.digest, bytes: finished.bytes }))
         }
@@ -122,6 +124,9 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 
 /// Robots shown in the table; of more only a summary.
 const ROBOTS: usize = 40;
+
+/// More contacts than this are only counted.
+const CONTACTS: usize = 10;
 
 fn human(r: &RunReport, trace: Option<&Trace>) -> String {
     let why = if r.reason.is_empty() { String::new() } else { format!(" ({})", r.reason) };
@@ -169,6 +174,15 @@ fn human(r: &RunReport, trace: Option<&Trace>) -> String {
     if r.robots.len() > ROBOTS {
         s += &format!("  … and {} more robots\n", r.robots.len() - ROBOTS);
     }
+    for c in r.contacts.iter().take(CONTACTS) {
+        s += &format!("  contact at {} s: {} with {}\n", figure(Some(c.at_s)), c.robot, c.with);
+    }
+    if r.collisions as usize > CONTACTS {
+        s += &format!("  … and {} more contacts\n", r.collisions as usize - CONTACTS);
+    }
+    for b in r.robots.iter().filter(|b| b.safe_actions > 0).take(ROBOTS) {
+        s += &format!("  {} fell back to its safe action {}\n", b.name, times(b.safe_actions));
+    }
     if !r.expectations.is_empty() {
         let rows: Vec<Vec<String>> = r
             .expectations
@@ -202,6 +216,10 @@ fn human(r: &RunReport, trace: Option<&Trace>) -> String {
         s += &format!("\n  trace {} ({} kB)\n", t.path, t.bytes.div_ceil(1024));
     }
     s
+}
+
+fn times(n: u32) -> String {
+    if n == 1 { "once".into() } else { format!("{n} times") }
 }
 
 fn count(n: u32, word: &str) -> String {

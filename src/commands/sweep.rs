@@ -175,5 +175,26 @@ fn human(d: &Document) -> String {
         }
         s += &table(&["metric (SI units)", "mean ± sd", "min", "median", "max", "n"], &rows);
     }
-    s
+    s + &failures(d)
+}
+
+/// More seeds than this are only counted.
+const SEEDS: usize = 20;
+
+/// Seeds that did not succeed, by case and reason.
+fn failures(d: &Document) -> String {
+    let mut by: BTreeMap<(String, &str, &str), Vec<u64>> = BTreeMap::new();
+    for r in d.runs.iter().filter(|r| r.outcome != "success") {
+        by.entry((r.case.label(), &r.outcome, &r.reason)).or_default().push(r.seed);
+    }
+    let mut s = String::new();
+    for ((case, outcome, reason), seeds) in by {
+        let shown: Vec<String> = seeds.iter().take(SEEDS).map(u64::to_string).collect();
+        let more =
+            if seeds.len() > SEEDS { format!(" and {} more", seeds.len() - SEEDS) } else { String::new() };
+        let case = if d.groups.len() > 1 { format!("{case}, ") } else { String::new() };
+        let why = if reason.is_empty() { String::new() } else { format!(" ({reason})") };
+        s += &format!("\n{outcome}{why}: {case}seeds {}{more}", shown.join(", "));
+    }
+    if s.is_empty() { s } else { s + "\n" }
 }

@@ -41,7 +41,9 @@ pub fn execute(
             missions.insert(case.platform.clone(), (run::load(compiled.graph)?, digest));
         }
         let graph = missions[&case.platform].0.graph();
-        values.push(compile::settings(graph, &case.set)?);
+        let set = compile::settings(graph, &case.set)?;
+        compile::verify_with(graph, &set)?;
+        values.push(set);
     }
     let all = (0..cases.len()).flat_map(|case| plan.seeds.iter().map(move |seed| (case, *seed)));
     let mine = |index: &usize| shard.is_none_or(|(i, n)| index % n == i - 1);

@@ -1,7 +1,7 @@
 //! `run`, `replay` and `plot`.
 
 use super::{MISSION, mission};
-use crate::support::{code, file, folder, json, soifra, stderr, stdout};
+use crate::support::{code, command, file, folder, json, soifra, stderr, stdout};
 use serde_json::Value;
 use std::path::Path;
 
@@ -168,4 +168,54 @@ fn plots_are_pictures() {
     assert!(std::fs::read_to_string(dir.join("a.svg")).unwrap().starts_with("<svg"));
     assert!(std::fs::read(dir.join("a.png")).unwrap().starts_with(b"\x89PNG"));
     assert_eq!(code(&soifra(&["plot", &path, "-o", "a.jpeg"])), 2);
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_folder() {
+    let dir = folder("run_folders");
+    let inner = dir.join("inner");
+    std::fs::create_dir_all(&inner).expect("a folder");
+    let path = mission(&inner);
+    let mut digests = Vec::new();
+    for (from, name) in [(&dir, "inner/errand.soi"), (&inner, "errand.soi"), (&inner, path.as_str())] {
+        let o = command(&["run", name, "--trace", "t.mcap", "--format", "json"])
+            .current_dir(from)
+            .output()
+            .expect("the program starts");
+        let d = json(&o);
+        digests.push((d["graph_digest"].clone(), d["trace"]["digest"].clone()));
+    }
+    assert!(digests.iter().all(|d| *d == digests[0] && d.1.is_string()), "{digests:?}");
+}
+
+#[test]
+fn a_trace_does_not_take_the_place_of_its_mission() {
+    let path = mission(&folder("run_over_itself"));
+    let before = std::fs::read(&path).expect("a mission");
+    let o = soifra(&["run", &path, "--trace", &path]);
+    assert_eq!(code(&o), 2, "{}", stderr(&o));
+    assert_eq!(std::fs::read(&path).expect("a mission"), before);
+    let o = soifra(&["graph", &path, "--format", "json", "-o", &path]);
+    assert_eq!(code(&o), 2, "{}", stderr(&o));
+    assert_eq!(std::fs::read(&path).expect("a mission"), before);
+}
+
+#[test]
+fn a_mission_of_several_is_named() {
+    let dir = folder("run_several");
+    let two =
+        super::MISSION.replace("mission errand", "mission trip").split("agent driver").next().map(|t| {
+            let mission = t.split("mission trip").nth(1).unwrap_or_default();
+            format!("{}\nmission trip{mission}", super::MISSION)
+        });
+    let path = file(&dir, "two.soi", two.expect("a mission"));
+    for (name, exit) in [("errand", 0), ("trip", 0), ("tirp", 2)] {
+        let o = soifra(&["run", &path, "--mission", name, "--trace", "none", "--format", "json"]);
+        assert_eq!(code(&o), exit, "{}", stderr(&o));
+        if exit == 0 {
+            assert_eq!(json(&o)["mission"], name);
+        } else {
+            assert!(stderr(&o).contains("did you mean `trip`?"), "{}", stderr(&o));
+        }
+    }
 }

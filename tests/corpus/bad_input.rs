@@ -170,3 +170,16 @@ fn large_programs() {
         goal g { subgoal s by a achieved when x } clock step 1 s within 3 s }";
     codes("robots", robots);
 }
+
+/// Records that hold each other could be looked through once for every way that leads to them.
+#[test]
+fn records_in_records_end() {
+    let doubling = |leaf: &str| {
+        (0..45).fold(format!("record R45 {{ {leaf} }}\n"), |t, i| {
+            format!("{t}record R{i} {{ a: R{0}, b: R{0} }}\n", i + 1)
+        })
+    };
+    codes("doubling records", doubling("x: Int"));
+    codes("doubling records of nothing", doubling(""));
+    assert_eq!(codes("a ring behind a record", "record A { b: B }\nrecord B { b: B? }\n"), ["S0208"]);
+}

@@ -54,17 +54,17 @@ const TABLE: &[(&str, &str, &str)] = &[
     (
         "sensor",
         "infrared(bearings: List<Angle, N>, range: Range<Length>, period: Duration, latency: Duration = 0 s, noise: Distribution<Number> = 0, false_alarm: Number = 0, height: Length = 2 cm) -> List<Beam, bearings>",
-        "Range by reflected light from the rim of the body, one beam a bearing; noise is relative to the range; `false_alarm` is the chance that a beam with nothing in range reports something anywhere in its range",
+        "Range by reflected light from the rim of the body, one beam a bearing; noise is relative to the range; `false_alarm` is the chance that a beam with nothing in range reports something anywhere in its range; it sees what is taller than `height`",
     ),
     (
         "sensor",
         "ultrasonic(bearings: List<Angle, N>, range: Range<Length>, cone: Angle, period: Duration, latency: Duration = 0 s, noise: Distribution<Length> = 0, height: Length = 2 cm) -> List<Beam, bearings>",
-        "Range to the nearest surface within a cone around each bearing",
+        "Range to the nearest surface within a cone around each bearing, from the rim of the body; it sees what is taller than `height`",
     ),
     (
         "sensor",
         "laser(beams: Int, field: Range<Angle>, range: Range<Length>, period: Duration, latency: Duration = 0 s, noise: Distribution<Length> = 0, height: Length = 20 cm) -> List<Beam, beams>",
-        "A planar scan, first beam at the low end of the field",
+        "A planar scan from the centre of the body, first beam at the low end of the field; it sees what is taller than `height`",
     ),
     (
         "sensor",

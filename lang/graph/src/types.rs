@@ -171,10 +171,11 @@ impl TypeTable {
     /// distribution kind a b c; record its fields in order; list count then items;
     /// optional a tag (0 = some, 1 + text index = none because) then the value.
     pub fn width(&self, t: &Type) -> usize {
-        self.width_within(t, 64)
+        self.width_within(t, 64, &mut BTreeMap::new())
     }
 
-    fn width_within(&self, t: &Type, depth: usize) -> usize {
+    /// `known` are the widths of records that have been worked out, so that each is worked out once.
+    fn width_within(&self, t: &Type, depth: usize, known: &mut BTreeMap<Name, usize>) -> usize {
         if depth == 0 {
             return MAX_WIDTH;
         }
@@ -187,18 +188,24 @@ impl TypeTable {
             Type::Range(_) => 2,
             Type::Distribution(_) => 4,
             Type::Matrix(r, c) => usize::from(*r) * usize::from(*c),
-            Type::Option(t) => 1 + self.width_within(t, depth - 1),
+            Type::Option(t) => 1 + self.width_within(t, depth - 1, known),
             Type::List(_, 0) => 1,
-            Type::List(t, n) => self.width_within(t, depth - 1).saturating_mul(*n as usize).saturating_add(1),
+            Type::List(t, n) => {
+                self.width_within(t, depth - 1, known).saturating_mul(*n as usize).saturating_add(1)
+            }
             Type::Record(n) => {
+                if let Some(width) = known.get(n) {
+                    return *width;
+                }
                 let fields = self.records.get(n).map(|r| r.fields.as_slice()).unwrap_or_default();
                 // A record that holds itself is as wide as can be; one look at it is enough.
                 let mut width = 0;
                 for (_, t) in fields {
                     if width < MAX_WIDTH {
-                        width += self.width_within(t, depth - 1);
+                        width += self.width_within(t, depth - 1, known);
                     }
                 }
+                known.insert(n.clone(), width);
                 width
             }
         };

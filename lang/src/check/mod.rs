@@ -8,10 +8,12 @@ mod clock;
 mod constants;
 mod effects;
 mod events;
+mod form;
 mod goals;
 mod knowledge;
 mod lists;
 mod placement;
+mod quantifiers;
 mod ranges;
 mod reachability;
 mod timing;
@@ -28,9 +30,11 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     if !out.is_empty() {
         return out;
     }
+    out.extend(form::check(graph));
     out.extend(knowledge::check(graph));
     out.extend(goals::check(graph));
     out.extend(capability::check(graph));
+    out.extend(quantifiers::check(graph));
     out.extend(clock::check(graph));
     out.extend(arbitration::check(graph));
     out.extend(reachability::check(graph));

@@ -1,7 +1,8 @@
 //! Does declared timing agree with itself? (Schedulability is a question of its own.)
 
+use super::walk;
 use crate::code;
-use soifra_graph::{Diagnostic, Expr, Graph, Trigger};
+use soifra_graph::{Diagnostic, Expr, Graph, Op, StmtKind, Trigger, Unit};
 
 /// Checks the timing clauses of every unit, where they are constants.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -58,6 +59,48 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             false,
         );
         longer("offset", offset, "period", period, "an offset is shorter than the period", true);
+    }
+    out.extend(expired_commands(g));
+    out
+}
+
+/// Warns of commands that expire before their only giver can renew them: the robot would move by jerks, each
+/// ended by its safe action.
+fn expired_commands(g: &Graph) -> Vec<Diagnostic> {
+    let mut out: Vec<Diagnostic> = Vec::new();
+    for r in &g.robots {
+        let Some(platform) = g.platforms.get(r.platform as usize) else { continue };
+        for a in r.agents.iter().filter_map(|b| g.agents.get(b.agent as usize)) {
+            for (i, port) in a.actuators.iter().enumerate() {
+                let lifetime = platform
+                    .of_role("actuator")
+                    .find(|c| c.name == port.name)
+                    .and_then(|c| c.args.iter().find(|(n, _)| &**n == "lifetime"))
+                    .map(|(_, e)| if e.op == Op::MakeSome { &e.args[0] } else { e });
+                let commands = |u: &Unit| {
+                    walk::statements(u)
+                        .into_iter()
+                        .any(|s| matches!(s.kind, StmtKind::Command(n, _) if n as usize == i))
+                };
+                let mut givers = a.units.iter().filter(|u| commands(u));
+                let (Some(lifetime), Some(unit), None) = (lifetime, givers.next(), givers.next()) else {
+                    continue;
+                };
+                let Trigger::Every { period, .. } = &unit.trigger else { continue };
+                let (Some(lives), Some(waits)) = (seconds(lifetime), seconds(period)) else { continue };
+                if lives < waits && !out.iter().any(|d| d.labels[0].span == period.span) {
+                    out.push(
+                        Diagnostic::warning(
+                            code::TIMING,
+                            format!("commands of `{}` expire before `{}` renews them", port.name, unit.name),
+                        )
+                        .at(period.span, format!("every {waits} s"))
+                        .at(lifetime.span, format!("a command lives for {lives} s"))
+                        .hint("a shorter period, or a longer `lifetime` of the actuator"),
+                    );
+                }
+            }
+        }
     }
     out
 }

@@ -11,7 +11,7 @@ use soifra_graph::{
     Component, Diagnostic, Dim, ExpectKind, Expectation, Expr, Goal, Graph, Metric, Name, Op, Param,
     RobotGroup, SCHEMA, Span, SubGoal, Topic, Type, Value, component::WORLD_ROLES, typing,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the user chose at the command line.
 #[derive(Debug, Clone, Default)]
@@ -134,7 +134,7 @@ impl<'a> Checker<'a> {
             self.types.records.insert(name.clone(), soifra_graph::Record { name: name.clone(), fields });
         }
         for (name, r) in &self.decls.records {
-            if self.holds(name, name, 0) {
+            if self.holds_itself(name) {
                 let d = Diagnostic::error(code::RECURSION, format!("record `{name}` holds itself"))
                     .at(r.name.span, "its size would have no end")
                     .hint("take the field out that leads back");
@@ -147,7 +147,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn holds(&self, outer: &Name, what: &Name, depth: usize) -> bool {
+    /// Whether a record holds itself, directly or through others.
+    fn holds_itself(&self, name: &Name) -> bool {
         fn inside(t: &Type, out: &mut Vec<Name>) {
             match t {
                 Type::Record(n) => out.push(n.clone()),
@@ -155,14 +156,19 @@ impl<'a> Checker<'a> {
                 _ => {}
             }
         }
-        if depth > self.types.records.len() {
-            return true;
+        let mut seen: BTreeSet<Name> = BTreeSet::new();
+        let mut waiting = vec![name.clone()];
+        while let Some(outer) = waiting.pop() {
+            let mut parts = Vec::new();
+            if let Some(r) = self.types.records.get(&outer) {
+                r.fields.iter().for_each(|(_, t)| inside(t, &mut parts));
+            }
+            if parts.contains(name) {
+                return true;
+            }
+            waiting.extend(parts.into_iter().filter(|p| seen.insert(p.clone())));
         }
-        let mut parts = Vec::new();
-        if let Some(r) = self.types.records.get(outer) {
-            r.fields.iter().for_each(|(_, t)| inside(t, &mut parts));
-        }
-        parts.iter().any(|p| p == what || self.holds(p, what, depth + 1))
+        false
     }
 
     fn params(&mut self, mission: Option<&'a ast::Mission>) -> Vec<Param> {

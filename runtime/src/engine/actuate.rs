@@ -59,6 +59,8 @@ pub(crate) struct Actuators {
     checks: BTreeMap<Time, Vec<u32>>,
     /// How long each layer of a subsumption holds, by channel.
     holds: BTreeMap<u32, Vec<Time>>,
+    /// Safe actions of each robot that had any.
+    pub safe_actions: BTreeMap<u32, u32>,
 }
 
 /// A proposal and its record.
@@ -255,6 +257,7 @@ impl Engine<'_> {
 
     /// Starts the safe action of a robot.
     pub(super) fn safe_action(&mut self, robot: u32, reason: &str, cause: Option<u64>) {
+        *self.actuators.safe_actions.entry(robot).or_default() += 1;
         let action = self.platform.safe_action(self.now, robot);
         self.recorder.record(self.now, cause, || Event::SafeAction {
             robot,

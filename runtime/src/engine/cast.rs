@@ -172,6 +172,9 @@ impl Cast {
     }
 }
 
+/// The shortest period, in nanoseconds: a bound on the number of events of a run.
+const SHORTEST_PERIOD: i64 = 1_000;
+
 /// Durations of a unit, and period and first release of a periodic one.
 #[expect(clippy::too_many_arguments, reason = "each is another side of the one unit")]
 fn schedule(
@@ -195,7 +198,9 @@ fn schedule(
     };
     let step = scene.step.unwrap_or(Time(1));
     let (period, offset) = match &unit.trigger {
-        TriggerCode::Every { period, offset } => (duration(Some(period), 1)?, duration(offset.as_ref(), 0)?),
+        TriggerCode::Every { period, offset } => {
+            (duration(Some(period), SHORTEST_PERIOD)?, duration(offset.as_ref(), 0)?)
+        }
         TriggerCode::Step { offset } => (Some(step), duration(offset.as_ref(), 0)?),
         _ => (None, None),
     };

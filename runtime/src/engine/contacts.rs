@@ -1,5 +1,6 @@
 //! Contacts, counted from what the platform reports.
 
+use crate::Time;
 use serde::{Deserialize, Serialize};
 
 /// Collisions so far and contacts that last.
@@ -14,7 +15,20 @@ pub(crate) struct Contacts {
     /// Robots whose contact began at the instant that is being judged.
     began: Vec<u32>,
     lasting: u32,
+    /// The first of them.
+    pub first: Vec<Touch>,
 }
+
+/// A contact: when, which robot, with what.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Touch {
+    pub at: Time,
+    pub robot: u32,
+    pub with: String,
+}
+
+/// How many contacts a report tells of; the trace has them all.
+const TOLD: usize = 20;
 
 impl Contacts {
     pub fn new(robots: usize) -> Self {
@@ -22,7 +36,10 @@ impl Contacts {
     }
 
     /// A contact begins.
-    pub fn begin(&mut self, robot: u32, other: Option<u32>) {
+    pub fn begin(&mut self, at: Time, robot: u32, other: Option<u32>, with: &str) {
+        if self.first.len() < TOLD {
+            self.first.push(Touch { at, robot, with: with.to_string() });
+        }
         self.total += 1;
         self.lasting += 1;
         for r in std::iter::once(robot).chain(other) {

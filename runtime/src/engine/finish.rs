@@ -2,9 +2,10 @@
 
 use super::{
     Engine, Outcome,
+    contacts::Touch,
     instant::End,
     judge::Occasion,
-    report::{ExpectationReport, GoalReport, INTERRUPTED, RobotReport, RunReport},
+    report::{ContactReport, ExpectationReport, GoalReport, INTERRUPTED, RobotReport, RunReport},
 };
 use crate::Event;
 use std::collections::BTreeMap;
@@ -17,9 +18,12 @@ impl Engine<'_> {
             Outcome::Aborted => format!("the run is aborted: {}", end.reason),
             _ => "the run has ended".to_string(),
         };
+        // The last one, which every run ends with, says nothing about the run.
+        let safe_actions = self.actuators.safe_actions.clone();
         for r in 0..self.scene.robots.len() {
             self.safe_action(r as u32, &why, None);
         }
+        self.actuators.safe_actions = safe_actions;
         self.judge_expectations(self.now, Occasion::End);
         let expectations = self.expectations();
         if end.outcome == Outcome::Success
@@ -43,12 +47,21 @@ impl Engine<'_> {
             reason: end.reason,
             sim_time_s: self.now.seconds(),
             collisions: self.contacts.total,
+            contacts: self.contacts(),
             expectations,
             goals: self.goals(),
             robots: (0..self.scene.robots.len()).map(|r| self.robot(r)).collect(),
             metrics,
             faults: self.faults,
         }
+    }
+
+    fn contacts(&self) -> Vec<ContactReport> {
+        let name =
+            |r: u32| self.scene.robots.get(r as usize).map_or_else(String::new, |r| r.name.to_string());
+        let told =
+            |t: &Touch| ContactReport { at_s: t.at.seconds(), robot: name(t.robot), with: t.with.clone() };
+        self.contacts.first.iter().map(told).collect()
     }
 
     fn expectations(&self) -> Vec<ExpectationReport> {
@@ -109,6 +122,7 @@ impl Engine<'_> {
             reached: self.goals.robot_reached(r),
             distance_to_target_m: last.zip(robot.target).and_then(|(p, t)| finite(distance(p, t))),
             collisions: self.contacts.of_robot.get(r).copied().unwrap_or(0),
+            safe_actions: self.actuators.safe_actions.get(&(r as u32)).copied().unwrap_or(0),
         }
     }
 }

@@ -123,7 +123,7 @@ impl Engine<'_> {
             }
             self.recorder.record(at, None, || Event::Contact { robot, other, with: with.clone(), begin });
             if begin {
-                self.contacts.begin(robot, other);
+                self.contacts.begin(at, robot, other, with);
                 began = Some(at);
             } else {
                 self.contacts.end(robot, other);

@@ -18,6 +18,8 @@ pub struct RunReport {
     pub sim_time_s: f64,
     /// Contacts of all robots, each counted once from touch to parting.
     pub collisions: u32,
+    /// The first of these contacts; the trace has all.
+    pub contacts: Vec<ContactReport>,
     /// Expectations, in order of declaration.
     pub expectations: Vec<ExpectationReport>,
     /// Goals, in order of declaration.
@@ -72,6 +74,17 @@ impl RunReport {
     }
 }
 
+/// A contact.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContactReport {
+    /// When it began.
+    pub at_s: f64,
+    /// The robot.
+    pub robot: String,
+    /// What it touched: a robot, a mover, a thing of the world.
+    pub with: String,
+}
+
 /// What became of an expectation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExpectationReport {
@@ -119,6 +132,8 @@ pub struct RobotReport {
     pub distance_to_target_m: Option<f64>,
     /// Contacts it took part in.
     pub collisions: u32,
+    /// How often it fell back to its safe action, as when its commands had expired.
+    pub safe_actions: u32,
 }
 
 /// A pose in `map`: position, and roll, pitch, yaw (ZYX).

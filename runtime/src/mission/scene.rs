@@ -171,13 +171,13 @@ impl Start<'_> {
         Err(Diagnostic::error(super::START_VALUE, format!("an array of {n} instances is not possible")))
     }
 
-    /// A duration above zero.
+    /// A duration of a microsecond at least.
     pub(crate) fn positive(&mut self, block: &Block, what: &str) -> Result<Time, Diagnostic> {
         let s = self.run(block, &[])?[0];
-        Time::from_seconds(s).filter(|t| *t > Time::ZERO).ok_or_else(|| {
+        Time::from_seconds(s).filter(|t| t.0 >= 1_000).ok_or_else(|| {
             Diagnostic::error(
                 super::START_VALUE,
-                format!("{what} is {s} s; it must be at least a nanosecond"),
+                format!("{what} is {s} s; it must be at least a microsecond"),
             )
         })
     }

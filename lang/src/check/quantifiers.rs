@@ -1,0 +1,53 @@
+//! Is everything that is asked of a robot known of it?
+
+use crate::code;
+use soifra_graph::{Diagnostic, ExpectKind, Expr, Graph, Op, RobotGroup};
+
+/// Checks `done`, expectations and metrics: a state of an agent is asked of robots that run the agent.
+pub fn check(g: &Graph) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    whole(g, &g.done, &mut out);
+    for m in &g.metrics {
+        whole(g, &m.value, &mut out);
+    }
+    for x in &g.expects {
+        let parts: Vec<&Expr> = match &x.kind {
+            ExpectKind::Always(a) | ExpectKind::Never(a) | ExpectKind::Finally(a) => vec![a],
+            ExpectKind::Eventually(a, b) => std::iter::once(a).chain(b).collect(),
+            ExpectKind::Until(a, b) => vec![a, b],
+            ExpectKind::LeadsTo(a, b, c) => [a, b].into_iter().chain(c).collect(),
+        };
+        for e in parts {
+            if x.each_robot { asked_of_all(g, e, &mut out) } else { whole(g, e, &mut out) }
+        }
+    }
+    out
+}
+
+/// An expression about the mission as a whole.
+fn whole(g: &Graph, e: &Expr, out: &mut Vec<Diagnostic>) {
+    e.walk(&mut |e| {
+        if let Op::Quantified(_) = e.op {
+            e.args.iter().for_each(|a| asked_of_all(g, a, out));
+        }
+    });
+}
+
+fn asked_of_all(g: &Graph, e: &Expr, out: &mut Vec<Diagnostic>) {
+    e.walk(&mut |e| {
+        let Op::Believed(agent, _) = e.op else { return };
+        let Some(a) = g.agents.get(agent as usize) else { return };
+        let lacks = |r: &&RobotGroup| r.agents.iter().all(|b| b.agent != agent);
+        if let Some(r) = g.robots.iter().find(lacks) {
+            out.push(
+                Diagnostic::error(code::NO_AGENT, format!("not every robot runs `{}`", a.name))
+                    .at(e.span, "asked of every robot")
+                    .at(r.at, "runs other agents")
+                    .hint(format!(
+                        "name the robot that is meant, or let `{}` run an agent that answers",
+                        r.name
+                    )),
+            );
+        }
+    });
+}
