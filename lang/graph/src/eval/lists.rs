@@ -1,10 +1,51 @@
-//! What the machine does with lists and with registers in any space.
+//! What the machine does with lists and with registers in any space. `None` stands for registers that
+//! are not there.
 
+use super::Memory;
 use super::code::{ListRef, Program, Space};
-use super::{FaultKind, Memory};
 use crate::reason;
 
-type Done = Result<(), FaultKind>;
+/// Copies registers between two places of which the compiler does not know that they are apart, without
+/// the call that a copy of unknown length costs where it is short.
+#[inline]
+fn copy(from: &[f64], to: &mut [f64]) {
+    macro_rules! short {
+        ($($n:literal)*) => {
+            match from.len() {
+                $($n => {
+                    if let (Some(from), Some(to)) = (from.first_chunk::<$n>(), to.first_chunk_mut::<$n>()) {
+                        *to = *from;
+                    }
+                })*
+                _ => to.copy_from_slice(from),
+            }
+        };
+    }
+    short!(0 1 2 3 4 5 6 7 8);
+}
+
+/// As [`copy`], within the frame.
+#[inline]
+fn copy_within(frame: &mut [f64], from: usize, to: usize, n: usize) -> Option<()> {
+    macro_rules! short {
+        ($($n:literal)*) => {
+            match n {
+                $($n => {
+                    let value = *frame.get(from..)?.first_chunk::<$n>()?;
+                    *frame.get_mut(to..)?.first_chunk_mut::<$n>()? = value;
+                })*
+                _ => {
+                    if from + n > frame.len() || to + n > frame.len() {
+                        return None;
+                    }
+                    frame.copy_within(from..from + n, to);
+                }
+            }
+        };
+    }
+    short!(1 2 3 4 5 6 7 8);
+    Some(())
+}
 
 impl Program {
     /// The registers of a space.
@@ -20,7 +61,6 @@ impl Program {
     }
 
     /// Copies `n` registers from a space into the frame.
-    #[inline]
     pub(super) fn transfer(
         &self,
         space: Space,
@@ -29,24 +69,20 @@ impl Program {
         to: usize,
         n: usize,
         memory: &Memory<'_>,
-    ) -> Done {
+    ) -> Option<()> {
         if let Space::Frame = space {
-            if from + n > frame.len() || to + n > frame.len() {
-                return Err(FaultKind::Malformed);
-            }
-            frame.copy_within(from..from + n, to);
-            return Ok(());
+            return copy_within(frame, from, to, n);
         }
-        let source = self.registers(space, &[], memory).get(from..from + n).ok_or(FaultKind::Malformed)?;
-        frame.get_mut(to..to + n).ok_or(FaultKind::Malformed)?.copy_from_slice(source);
-        Ok(())
+        let source = self.registers(space, &[], memory).get(from..from + n)?;
+        copy(source, frame.get_mut(to..to + n)?);
+        Some(())
     }
 
     /// Number of items.
     #[inline]
-    pub(super) fn count(&self, l: &ListRef, frame: &[f64], memory: &Memory<'_>) -> Result<usize, FaultKind> {
-        let count = self.registers(l.space, frame, memory).get(l.at as usize).ok_or(FaultKind::Malformed)?;
-        Ok((*count as usize).min(l.capacity as usize))
+    pub(super) fn count(&self, l: &ListRef, frame: &[f64], memory: &Memory<'_>) -> Option<usize> {
+        let count = self.registers(l.space, frame, memory).get(l.at as usize)?;
+        Some((*count as usize).min(l.capacity as usize))
     }
 
     /// All registers of all items.
@@ -55,10 +91,10 @@ impl Program {
         l: &ListRef,
         frame: &'s [f64],
         memory: &'s Memory<'_>,
-    ) -> Result<&'s [f64], FaultKind> {
+    ) -> Option<&'s [f64]> {
         let n = self.count(l, frame, memory)? * l.width as usize;
         let from = l.at as usize + 1;
-        self.registers(l.space, frame, memory).get(from..from + n).ok_or(FaultKind::Malformed)
+        self.registers(l.space, frame, memory).get(from..from + n)
     }
 
     /// First register of item `i`.
@@ -69,31 +105,94 @@ impl Program {
 
     /// Puts what the body reads of item `i` where the body wants it.
     #[inline]
-    pub(super) fn item(&self, l: &ListRef, i: usize, frame: &mut [f64], memory: &Memory<'_>) -> Done {
+    pub(super) fn item(&self, l: &ListRef, i: usize, frame: &mut [f64], memory: &Memory<'_>) -> Option<()> {
         let (from, n) = (l.part.0 as usize, l.part.1 as usize);
         if n == 0 {
-            return Ok(());
+            return Some(());
         }
-        self.transfer(l.space, Program::place(l, i) + from, frame, l.item as usize + from, n, memory)
+        let (from, to) = (Program::place(l, i) + from, l.item as usize + from);
+        match l.space {
+            Space::Frame => copy_within(frame, from, to, n),
+            _ => self.transfer(l.space, from, frame, to, n, memory),
+        }
     }
 
-    /// Appends item `i` to the list at `d`.
-    pub(super) fn keep(
+    /// Makes the first item current; false when there is none.
+    #[inline(never)]
+    pub(super) fn first_item(&self, list: u32, frame: &mut [f64], memory: &Memory<'_>) -> Option<bool> {
+        let l = self.lists.get(list as usize)?;
+        let count = self.count(l, frame, memory)?;
+        if count == 0 {
+            return Some(false);
+        }
+        let state = frame.get_mut(l.state as usize..)?.first_chunk_mut::<2>()?;
+        *state = [f64::from_bits(0), f64::from_bits(count as u64)];
+        self.item(l, 0, frame, memory)?;
+        Some(true)
+    }
+
+    /// Makes the next item current; false when there is none.
+    #[inline(never)]
+    pub(super) fn next_item(&self, list: u32, frame: &mut [f64], memory: &Memory<'_>) -> Option<bool> {
+        let l = self.lists.get(list as usize)?;
+        let [index, count] = frame.get_mut(l.state as usize..)?.first_chunk_mut::<2>()?;
+        let next = index.to_bits() + 1;
+        if next >= count.to_bits() {
+            return Some(false);
+        }
+        *index = f64::from_bits(next);
+        self.item(l, next as usize, frame, memory)?;
+        Some(true)
+    }
+
+    /// Index of the current item.
+    #[inline]
+    pub(super) fn current(l: &ListRef, frame: &[f64]) -> Option<usize> {
+        Some(frame.get(l.state as usize)?.to_bits() as usize)
+    }
+
+    /// Appends the current item to the list at `d`.
+    #[inline(never)]
+    pub(super) fn keep(&self, list: u32, frame: &mut [f64], d: usize, memory: &Memory<'_>) -> Option<()> {
+        let l = self.lists.get(list as usize)?;
+        let from = Program::place(l, Program::current(l, frame)?);
+        let to = grow(l, frame, d, l.width as usize)?;
+        self.transfer(l.space, from, frame, to, l.width as usize, memory)
+    }
+
+    /// Appends the value at `a` to the list at `d`.
+    #[inline(never)]
+    pub(super) fn append(
         &self,
-        l: &ListRef,
-        i: usize,
+        list: u32,
         frame: &mut [f64],
         d: usize,
+        a: usize,
         memory: &Memory<'_>,
-    ) -> Done {
-        let count = frame.get_mut(d).ok_or(FaultKind::Malformed)?;
-        let n = *count as usize;
-        if n >= l.out_capacity as usize {
-            return Err(FaultKind::Malformed);
+    ) -> Option<()> {
+        let l = self.lists.get(list as usize)?;
+        let to = grow(l, frame, d, l.out_width as usize)?;
+        self.transfer(Space::Frame, a, frame, to, l.out_width as usize, memory)
+    }
+
+    /// The current item as an optional at `d` when its key, at `a`, is the least so far.
+    #[inline(never)]
+    pub(super) fn least(
+        &self,
+        list: u32,
+        frame: &mut [f64],
+        d: usize,
+        a: usize,
+        memory: &Memory<'_>,
+    ) -> Option<()> {
+        let l = self.lists.get(list as usize)?;
+        let (i, key) = (Program::current(l, frame)?, *frame.get(a)?);
+        let best = frame.get_mut(l.state as usize + 2)?;
+        if i == 0 || key < *best {
+            *best = key;
+            self.found(l, i, frame, d, memory)?;
         }
-        *count = (n + 1) as f64;
-        let width = l.width as usize;
-        self.transfer(l.space, Program::place(l, i), frame, d + 1 + n * width, width, memory)
+        Some(())
     }
 
     /// Item `i` as an optional at `d`.
@@ -104,8 +203,8 @@ impl Program {
         frame: &mut [f64],
         d: usize,
         memory: &Memory<'_>,
-    ) -> Done {
-        *frame.get_mut(d).ok_or(FaultKind::Malformed)? = 0.0;
+    ) -> Option<()> {
+        *frame.get_mut(d)? = 0.0;
         self.transfer(l.space, Program::place(l, i), frame, d + 1, l.width as usize, memory)
     }
 
@@ -117,12 +216,12 @@ impl Program {
         frame: &mut [f64],
         d: usize,
         memory: &Memory<'_>,
-    ) -> Done {
+    ) -> Option<()> {
         if index >= 0.0 && index < self.count(l, frame, memory)? as f64 {
             return self.found(l, index as usize, frame, d, memory);
         }
-        *frame.get_mut(d).ok_or(FaultKind::Malformed)? = reason::tag(reason::NO_SUCH_ITEM);
-        Ok(())
+        *frame.get_mut(d)? = reason::tag(reason::NO_SUCH_ITEM);
+        Some(())
     }
 
     /// The list with the value at `a` at its end, at `d`; a full list loses its first item.
@@ -133,43 +232,39 @@ impl Program {
         d: usize,
         a: usize,
         memory: &Memory<'_>,
-    ) -> Done {
+    ) -> Option<()> {
         let (width, capacity) = (l.width as usize, l.capacity as usize);
         let count = self.count(l, frame, memory)?;
         if capacity == 0 {
-            *frame.get_mut(d).ok_or(FaultKind::Malformed)? = 0.0;
-            return Ok(());
+            *frame.get_mut(d)? = 0.0;
+            return Some(());
         }
         let (first, kept) = if count == capacity { (1, count - 1) } else { (0, count) };
         self.transfer(l.space, Program::place(l, first), frame, d + 1, kept * width, memory)?;
         self.transfer(Space::Frame, a, frame, d + 1 + kept * width, width, memory)?;
-        *frame.get_mut(d).ok_or(FaultKind::Malformed)? = (kept + 1) as f64;
-        Ok(())
+        *frame.get_mut(d)? = (kept + 1) as f64;
+        Some(())
     }
 }
 
-/// Appends the value at `a` to the list at `d`.
-pub(super) fn append(l: &ListRef, frame: &mut [f64], d: usize, a: usize) -> Done {
-    let count = frame.get_mut(d).ok_or(FaultKind::Malformed)?;
-    let (n, width) = (*count as usize, l.out_width as usize);
+/// Makes room for one more item in the list at `d`; returns its first register.
+#[inline]
+fn grow(l: &ListRef, frame: &mut [f64], d: usize, width: usize) -> Option<usize> {
+    let count = frame.get_mut(d)?;
+    let n = *count as usize;
     if n >= l.out_capacity as usize {
-        return Err(FaultKind::Malformed);
+        return None;
     }
     *count = (n + 1) as f64;
-    let to = d + 1 + n * width;
-    if a + width > frame.len() || to + width > frame.len() {
-        return Err(FaultKind::Malformed);
-    }
-    frame.copy_within(a..a + width, to);
-    Ok(())
+    Some(d + 1 + n * width)
 }
 
 /// A number or none, at `d`.
-pub(super) fn optional(value: Option<f64>, frame: &mut [f64], d: usize) -> Done {
-    let out = frame.get_mut(d..d + 2).ok_or(FaultKind::Malformed)?;
-    match value {
-        Some(x) => out.copy_from_slice(&[0.0, x]),
-        None => out.copy_from_slice(&[reason::tag(reason::NONE_FOUND), 0.0]),
-    }
-    Ok(())
+pub(super) fn optional(value: Option<f64>, frame: &mut [f64], d: usize) -> Option<()> {
+    let out = frame.get_mut(d..)?.first_chunk_mut::<2>()?;
+    *out = match value {
+        Some(x) => [0.0, x],
+        None => [reason::tag(reason::NONE_FOUND), 0.0],
+    };
+    Some(())
 }

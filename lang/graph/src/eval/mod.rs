@@ -12,11 +12,6 @@
 mod builtins;
 mod code;
 mod compile;
-mod compile_call;
-mod compile_expr;
-mod compile_list;
-mod compile_ops;
-mod compile_stmt;
 mod constant;
 mod draw;
 mod env;
@@ -25,6 +20,7 @@ mod geometry;
 mod lists;
 mod memory;
 mod run;
+mod run_other;
 mod widths;
 
 pub use code::Program;

@@ -1,9 +1,10 @@
 //! Code for lists: loops that go through a list where it lies, and functions of lists.
 
-use super::code::{Instr, ListRef};
-use super::compile::{Compiled, Compiler, Place, error};
-use super::compile_expr::{arguments, gives, writes_last};
-use super::widths::same_layout;
+use super::emit::error;
+use super::expr::{arguments, gives, writes_last};
+use super::{Compiled, Compiler, Place};
+use crate::eval::code::{Instr, ListRef};
+use crate::eval::widths::same_layout;
 use crate::{Expr, Function, ListOp, Span, Type, reason};
 
 impl Compiler<'_> {
@@ -44,7 +45,7 @@ impl Compiler<'_> {
         }
         list.item = item;
         list.state = self.alloc(3, e.span)?;
-        self.fetch_for_loop(body);
+        self.begin_loop(body)?;
         self.body.variable += 1;
         Ok(list)
     }
@@ -66,6 +67,7 @@ impl Compiler<'_> {
         let mut next = Vec::new();
         self.perhaps(|c| c.with_bound(local, None, |c| body(c, index, &mut next)))?;
         self.body.in_loop = nested;
+        self.end_loop();
         self.land(&next);
         self.emit(Instr::ListNext { list: index, to: first }, at);
         self.repeat(before, u64::from(list.capacity));

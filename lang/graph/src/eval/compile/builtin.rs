@@ -1,8 +1,9 @@
 //! Code for calls of built-in functions.
 
-use super::code::Instr;
-use super::compile::{Compiled, Compiler, Place, error};
-use super::compile_expr::{arguments, gives};
+use super::emit::error;
+use super::expr::{arguments, gives};
+use super::{Compiled, Compiler, Place};
+use crate::eval::code::Instr;
 use crate::{Expr, Function, Type, pattern::Bindings};
 
 impl Compiler<'_> {
@@ -126,7 +127,7 @@ impl Compiler<'_> {
 
     /// Functions that ask the surroundings.
     #[inline(never)]
-    fn gen_env_function(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
+    pub(super) fn gen_env_function(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
         self.check_call(e, f)?;
         self.body.variable += 1;
         let d = self.dest(dest, 1, e.span)?;

@@ -1,8 +1,9 @@
 //! Code for statements and guards.
 
-use super::code::{EffectCode, Instr};
-use super::compile::{Compiled, Compiler, MAX_DEPTH, error};
-use super::compile_expr::gives;
+use super::emit::error;
+use super::expr::gives;
+use super::{Compiled, Compiler, MAX_DEPTH};
+use crate::eval::code::{EffectCode, Instr};
 use crate::{Conjunct, Expr, Rule, Span, Stmt, StmtKind, Type};
 
 /// Every expression of some statements.
@@ -56,7 +57,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    fn gen_stmt(&mut self, s: &Stmt) -> Compiled<()> {
+    pub(super) fn gen_stmt(&mut self, s: &Stmt) -> Compiled<()> {
         match &s.kind {
             StmtKind::Let(local, e) => {
                 let (register, t) = self.local(*local, s.at)?;
@@ -104,7 +105,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    fn gen_if_some_stmt(
+    pub(super) fn gen_if_some_stmt(
         &mut self,
         value: &Expr,
         local: u32,
@@ -140,7 +141,7 @@ impl Compiler<'_> {
         Ok(tag)
     }
 
-    fn gen_switch_stmt(
+    pub(super) fn gen_switch_stmt(
         &mut self,
         value: &Expr,
         arms: &[(Vec<u32>, Vec<Stmt>)],
@@ -175,7 +176,7 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    fn gen_rules(&mut self, rules: &[Rule]) -> Compiled<()> {
+    pub(super) fn gen_rules(&mut self, rules: &[Rule]) -> Compiled<()> {
         let mut end = Vec::new();
         let mut most = self.body.cost;
         for (i, r) in rules.iter().enumerate() {
@@ -233,7 +234,7 @@ impl Compiler<'_> {
         Ok((a, n))
     }
 
-    fn gen_effect(&mut self, s: &Stmt) -> Compiled<()> {
+    pub(super) fn gen_effect(&mut self, s: &Stmt) -> Compiled<()> {
         let Some(agent) = &self.agent else {
             return error(s.at, "there is no agent here that could do this");
         };

@@ -1,7 +1,21 @@
 //! The compiler: what it knows, scopes, blocks, registers and instructions. What becomes of expressions
-//! and statements is in `compile_*.rs`.
+//! and statements is in the files below.
 
-use super::code::{FunctionCode, Instr, Program, Space};
+mod arithmetic;
+mod branch;
+mod builtin;
+mod emit;
+mod expr;
+mod fold;
+mod function;
+mod list;
+mod parts;
+mod robots;
+mod slots;
+mod stmt;
+
+use self::emit::error;
+use super::code::{Instr, Program, Space};
 use super::widths::Widths;
 use super::{CompileError, Layout, MAX_FRAME};
 use crate::{
@@ -117,6 +131,9 @@ pub(super) struct Body {
     pub fetched: Vec<Fetched>,
     /// Everything that is fetched in a loop was fetched before it.
     pub in_loop: bool,
+    /// States, arguments and parameters that were loaded before the loop that is being compiled: where
+    /// they lie, and the registers they were loaded into.
+    pub loaded: Vec<(Place, u32)>,
     /// How deep the functions called here call.
     pub calls: u32,
 }
@@ -262,7 +279,7 @@ impl<'g> Compiler<'g> {
     /// # Errors
     /// When a statement is malformed.
     pub fn stmts(&mut self, scope: &mut Scope, stmts: &[Stmt]) -> Result<Block, CompileError> {
-        self.block(scope, &mut |visit| super::compile_stmt::walk(stmts, visit), &mut |c| {
+        self.block(scope, &mut |visit| stmt::walk(stmts, visit), &mut |c| {
             c.gen_stmts(stmts)?;
             Ok((0, 0))
         })
@@ -348,252 +365,5 @@ impl<'g> Compiler<'g> {
             self.body.fetched.push(r);
         }
         Ok(())
-    }
-
-    /// Compiles a function and all those it calls.
-    fn ensure_function(&mut self, root: u32, at: Span) -> Compiled<()> {
-        let mut waiting: Vec<(u32, Vec<u32>)> = Vec::new();
-        let mut next = Some(root);
-        loop {
-            if let Some(f) = next.take()
-                && !self.compiled.contains_key(&f)
-            {
-                let function = self.functions.get(f as usize);
-                let Some(function) = function else {
-                    return error(at, format!("there is no function {f}"));
-                };
-                if waiting.iter().any(|(g, _)| *g == f) {
-                    return error(function.span, format!("the function `{}` calls itself", function.name));
-                }
-                let mut callees = Vec::new();
-                function.body.walk(&mut |e| {
-                    if let Op::Call(g) = e.op {
-                        callees.push(g);
-                    }
-                });
-                waiting.push((f, callees));
-            }
-            let Some((f, callees)) = waiting.last_mut() else {
-                return Ok(());
-            };
-            next = callees.pop();
-            if next.is_none() {
-                let f = *f;
-                waiting.pop();
-                let made = self.function(f).map_err(|e| *e);
-                self.compiled.insert(f, made);
-            }
-        }
-    }
-
-    /// Compiles a function whose callees are compiled; returns its place in the program.
-    fn function(&mut self, index: u32) -> Compiled<u32> {
-        let Some(function) = self.functions.get(index as usize) else {
-            return error(Span::default(), format!("there is no function {index}"));
-        };
-        let at = function.span;
-        let parameters = function.parameters.iter().map(|(_, t)| t);
-        if !function.locals.iter().take(function.parameters.len()).eq(parameters) {
-            return error(at, "the parameters of a function are its first locals");
-        }
-        let (locals, top) = self.lay_out(&function.locals, at)?;
-        let bound = vec![None; locals.len()];
-        self.body = Body { locals, bound, top, peak: top, ..Body::default() };
-        // A function belongs to no agent, whoever calls it.
-        let agent = self.agent.take();
-        let start = self.program.code.len();
-        let made = self.function_body(&function.body);
-        self.agent = agent;
-        match made {
-            Ok(result) => {
-                let (frame, bound) = (self.body.peak, self.body.cost);
-                let depth = self.body.calls + 1;
-                if depth > MAX_CALLS {
-                    return error(at, format!("functions call each other more than {MAX_CALLS} deep"));
-                }
-                let code = FunctionCode { start: start as u32, result, frame, bound, depth };
-                self.program.functions.push(code);
-                Ok((self.program.functions.len() - 1) as u32)
-            }
-            Err(e) => {
-                self.program.code.truncate(start);
-                self.program.spans.truncate(start);
-                Err(e)
-            }
-        }
-    }
-
-    fn function_body(&mut self, e: &Expr) -> Compiled<u32> {
-        let width = self.width(&e.ty, e.span)?;
-        let place = self.generate(e, None)?;
-        let at = self.in_frame(place, width, e.span)?;
-        self.emit(Instr::End, e.span);
-        Ok(at)
-    }
-
-    /// Registers of a type.
-    pub(super) fn width(&mut self, t: &Type, at: Span) -> Compiled<u32> {
-        self.widths.width(t).or_else(|text| error(at, text))
-    }
-
-    /// Free registers.
-    pub(super) fn alloc(&mut self, n: u32, at: Span) -> Compiled<u32> {
-        let d = self.body.top;
-        if d as usize + n as usize > MAX_FRAME {
-            return error(at, "the values here take too many registers");
-        }
-        self.body.top = d + n;
-        self.body.peak = self.body.peak.max(self.body.top);
-        Ok(d)
-    }
-
-    /// The registers wanted, or free ones.
-    pub(super) fn dest(&mut self, dest: Option<u32>, n: u32, at: Span) -> Compiled<u32> {
-        dest.map_or_else(|| self.alloc(n, at), Ok)
-    }
-
-    /// Appends an instruction.
-    pub(super) fn emit(&mut self, instr: Instr, at: Span) {
-        self.program.code.push(instr);
-        self.program.spans.push(at);
-        self.body.cost = self.body.cost.saturating_add(1);
-    }
-
-    /// The next instruction.
-    pub(super) fn here(&self) -> u32 {
-        self.program.code.len() as u32
-    }
-
-    /// Appends a jump whose target is set by [`Compiler::land`].
-    pub(super) fn jump(&mut self, instr: Instr, jumps: &mut Vec<u32>, at: Span) {
-        jumps.push(self.here());
-        self.emit(instr, at);
-    }
-
-    /// Lets jumps come here.
-    pub(super) fn land(&mut self, jumps: &[u32]) {
-        let here = self.here();
-        for j in jumps {
-            if let Some(to) = self.program.code.get_mut(*j as usize).and_then(Instr::target) {
-                *to = here;
-            }
-        }
-    }
-
-    /// Index of a constant in the pool.
-    pub(super) fn pooled(&mut self, x: f64) -> u32 {
-        let constants = &mut self.program.constants;
-        *self.pool.entry(x.to_bits()).or_insert_with(|| {
-            constants.push(x);
-            (constants.len() - 1) as u32
-        })
-    }
-
-    /// Sets a register to a constant.
-    pub(super) fn constant_into(&mut self, d: u32, x: f64, at: Span) {
-        let k = self.pooled(x);
-        self.emit(Instr::Const { d, k }, at);
-    }
-
-    /// Copies a value of `n` registers to `d`, unless it is there.
-    pub(super) fn copy(&mut self, place: Place, d: u32, n: u32, at: Span) {
-        let Place { space, at: from } = place;
-        if n == 0 || place == Place::frame(d) {
-            return;
-        }
-        let instr = match (space, n) {
-            (Space::Frame, 1) => Instr::Move { d, a: from },
-            (Space::Constants, 1) => Instr::Const { d, k: from },
-            (Space::States, 1) => Instr::LoadState { d, at: from },
-            (_, 1) => Instr::Load { space, d, at: from },
-            _ => Instr::Copy { space, d, at: from, n },
-        };
-        self.emit(instr, at);
-    }
-
-    /// The value where it is wanted, or where it is when nobody cares.
-    pub(super) fn settle(&mut self, place: Place, dest: Option<u32>, n: u32, at: Span) -> Place {
-        match dest {
-            Some(d) => {
-                self.copy(place, d, n, at);
-                Place::frame(d)
-            }
-            None => place,
-        }
-    }
-
-    /// First register of a value, which is loaded when it is not in the frame.
-    pub(super) fn in_frame(&mut self, place: Place, n: u32, at: Span) -> Compiled<u32> {
-        if place.space == Space::Frame {
-            return Ok(place.at);
-        }
-        let d = self.alloc(n, at)?;
-        self.copy(place, d, n, at);
-        Ok(d)
-    }
-
-    /// Zeroes what a value of type `t` does not use.
-    pub(super) fn tidy(&mut self, a: u32, t: &Type, at: Span) -> Compiled<()> {
-        let shape = self.widths.shape(t).or_else(|text| error(at, text))?;
-        if let Some(shape) = shape {
-            let index = self.program.shapes.iter().position(|s| *s == shape).unwrap_or_else(|| {
-                self.program.shapes.push(shape);
-                self.program.shapes.len() - 1
-            });
-            self.emit(Instr::Tidy { a, shape: index as u32 }, at);
-        }
-        Ok(())
-    }
-
-    /// Type of a local.
-    pub(super) fn local(&self, index: u32, at: Span) -> Compiled<(u32, Type)> {
-        match self.body.locals.get(index as usize) {
-            Some((register, t)) => Ok((*register, t.clone())),
-            None => error(at, format!("there is no local {index}")),
-        }
-    }
-}
-
-/// How deep functions may call each other.
-const MAX_CALLS: u32 = 64;
-
-/// A refusal.
-#[cold]
-pub(super) fn error<T>(at: Span, text: impl Into<String>) -> Compiled<T> {
-    Err(Box::new(CompileError::new(at, text)))
-}
-
-impl Conjunct {
-    /// The expression that is evaluated.
-    pub(super) fn expr(&self) -> &Expr {
-        match self {
-            Conjunct::Holds(e) | Conjunct::Binds(_, e) => e,
-        }
-    }
-}
-
-impl Instr {
-    /// The target, when this is a jump.
-    fn target(&mut self) -> Option<&mut u32> {
-        match self {
-            Instr::Jump { to }
-            | Instr::JumpIf { to, .. }
-            | Instr::JumpUnless { to, .. }
-            | Instr::JumpLt { to, .. }
-            | Instr::JumpLe { to, .. }
-            | Instr::JumpEq { to, .. }
-            | Instr::JumpNe { to, .. }
-            | Instr::JumpLtK { to, .. }
-            | Instr::JumpLeK { to, .. }
-            | Instr::JumpGtK { to, .. }
-            | Instr::JumpGeK { to, .. }
-            | Instr::JumpEqK { to, .. }
-            | Instr::JumpNeK { to, .. }
-            | Instr::RobotFirst { to, .. }
-            | Instr::RobotNext { to, .. }
-            | Instr::ListFirst { to, .. }
-            | Instr::ListNext { to, .. } => Some(to),
-            _ => None,
-        }
     }
 }
