@@ -30,7 +30,7 @@ results: build
 	@tools/results $(SOIFRA)
 
 bench: setup
-	@cargo bench --workspace
+	@cargo bench --bench engine --bench swarm --bench check --bench run -- --quiet
 
 fmt: setup
 	@cargo fmt --all

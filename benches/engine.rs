@@ -70,7 +70,7 @@ fn tick(tree: &mut BT<usize, [f64; 4]>) -> Option<(Status, f64)> {
 fn main() {
     let mut criterion = support::criterion();
     for (name, width) in WIDTHS {
-        let template = std::fs::read_to_string(support::project("benches/tree.soi")).unwrap_or_default();
+        let template = support::read("benches/tree.soi.in");
         let text = template.replace("// the tree\n", &soi(0, LEAVES, width));
         let compiled = Compiled::new(&support::scratch(&format!("tree_{name}.soi"), &text), &[]);
         let prepared = compiled.prepared();
@@ -83,7 +83,8 @@ fn main() {
         let traced = || support::run_traced(&prepared, "tree.mcap").1 / ticked;
         let mut tree = BT::new(behavior(0, LEAVES, width), [1.0, 2.0, 3.0, 4.0]);
         let mut bonsai = || {
-            let run = |tree: &mut BT<_, _>| (0..TICKS).all(|_| tick(tree).map(|r| r.0) == Some(Status::Running));
+            let run =
+                |tree: &mut BT<_, _>| (0..TICKS).all(|_| tick(tree).map(|r| r.0) == Some(Status::Running));
             seconds(|| assert!(run(&mut tree))) / ticked
         };
 

@@ -1,19 +1,20 @@
-//! Crowds: a circle swap against dodgy_2d, and time and memory for many robots. The rules are those of
+//! A circle swap against dodgy_2d, and time and memory for many robots. The rules are those of
 //! `missions/swarm/traffic.soi`; one thread, as dodgy_2d has.
 
-mod support;
 #[path = "support/dodgy.rs"]
 mod dodgy;
 #[path = "support/memory.rs"]
 mod memory;
+mod support;
 
 use dodgy::Swap;
 use soifra::execute::Prepared;
 use soifra_runtime::RunReport;
 use support::Compiled;
 
-/// A few robots and many, at the same density.
-const CROWDS: [usize; 2] = [100, 10_000];
+/// A few robots and many, at the same density: rows and columns of circles of 25.
+const COLUMNS: [usize; 2] = [2, 20];
+const ROBOTS: [usize; 2] = [100, 10_000];
 
 /// The most memory 10,000 robots may take, in MB.
 const MEMORY: f64 = 300.0;
@@ -76,22 +77,23 @@ fn places(prepared: &Prepared<'_>) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
         .unzip()
 }
 
-fn crowd(criterion: &mut criterion::Criterion) {
-    let path = support::project("missions/swarm/crowd.soi");
-    let [few, many] = CROWDS.map(|n| Compiled::new(&path, &[("robots", n.to_string())]));
+fn many_circles(criterion: &mut criterion::Criterion) {
+    let path = support::project("missions/swarm/many_circles.soi");
+    let [few, many] = COLUMNS.map(|n| Compiled::new(&path, &[("columns", n.to_string())]));
     let [few, many] = [few.prepared(), many.prepared()];
+    assert_eq!([&few, &many].map(|p| p.scene().robots.len()), ROBOTS);
     let cost = |prepared: &Prepared<'_>, run: &dyn Fn(&Prepared<'_>) -> (RunReport, f64)| {
-        let (report, seconds) = judged("crowd", run(prepared));
+        let (report, seconds) = judged("many circles", run(prepared));
         seconds / robot_steps(&report)
     };
     let plain: &dyn Fn(&Prepared<'_>) -> _ = &|p| support::run(p);
-    let traced: &dyn Fn(&Prepared<'_>) -> _ = &|p| support::run_traced(p, "crowd.mcap");
+    let traced: &dyn Fn(&Prepared<'_>) -> _ = &|p| support::run_traced(p, "circles.mcap");
     // The small crowd is run so often that both take about as long.
     let small = |run| {
-        let times = CROWDS[1] / CROWDS[0] / 4;
+        let times = ROBOTS[1] / ROBOTS[0] / 4;
         (0..times).map(|_| cost(&few, run)).sum::<f64>() / times as f64
     };
-    let mut group = criterion.benchmark_group("swarm, crowd, a step of a robot");
+    let mut group = criterion.benchmark_group("swarm, many circles, a step of a robot");
     support::add(&mut group, "100 robots", || cost(&few, plain));
     support::add(&mut group, "10,000 robots", || cost(&many, plain));
     group.finish();
@@ -104,13 +106,15 @@ fn crowd(criterion: &mut criterion::Criterion) {
     let ratio = support::ratio(2, || cost(&many, traced), || small(traced));
     support::verdict("swarm_scale_traced", &format!("{what}, trace on"), ratio, None);
 
-    let robots = format!("robots={}", CROWDS[1]);
-    for (name, trace, bar) in [("swarm_memory", "none", Some(1.0)), ("swarm_memory_traced", "crowd.mcap", None)] {
+    let columns = format!("columns={}", COLUMNS[1]);
+    for (name, trace, bar) in
+        [("swarm_memory", "none", Some(1.0)), ("swarm_memory_traced", "circles.mcap", None)]
+    {
         let trace = match trace {
             "none" => trace.to_string(),
             file => support::scratch(file, ""),
         };
-        let arguments = ["run", &path, "--set", &robots, "--trace", &trace, "--format", "json"];
+        let arguments = ["run", &path, "--set", &columns, "--trace", &trace, "--format", "json"];
         match memory::peak(env!("CARGO_BIN_EXE_soifra"), &arguments) {
             Some(mb) => {
                 let what = format!("peak memory at 10,000 robots, {mb:.0} MB, to {MEMORY} MB");
@@ -124,6 +128,6 @@ fn crowd(criterion: &mut criterion::Criterion) {
 fn main() {
     let mut criterion = support::criterion();
     circle(&mut criterion);
-    crowd(&mut criterion);
+    many_circles(&mut criterion);
     criterion.final_summary();
 }

@@ -95,6 +95,11 @@ pub fn project(path: &str) -> String {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path).to_string_lossy().into_owned()
 }
 
+/// The text of a file of the project.
+pub fn read(path: &str) -> String {
+    std::fs::read_to_string(project(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
 /// A file of the bench's own, made anew.
 pub fn scratch(name: &str, text: &str) -> String {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -136,9 +141,8 @@ pub fn run(prepared: &execute::Prepared<'_>) -> (RunReport, f64) {
 pub fn run_traced(prepared: &execute::Prepared<'_>, name: &str) -> (RunReport, f64) {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let watch = Stopwatch::start();
-    let (report, _) = prepared
-        .run_traced(&path.to_string_lossy(), &AtomicBool::new(false))
-        .unwrap_or_else(|r| refused(r));
+    let (report, _) =
+        prepared.run_traced(&path.to_string_lossy(), &AtomicBool::new(false)).unwrap_or_else(|r| refused(r));
     (report, watch.seconds())
 }
 

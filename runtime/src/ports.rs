@@ -114,6 +114,11 @@ pub trait Platform {
 pub trait WorldTruth {
     /// True pose in `map`: x y z qx qy qz qw.
     fn pose(&self, robot: u32) -> [f64; 7];
+    /// True position in `map`: what [`WorldTruth::pose`] begins with.
+    fn position(&self, robot: u32) -> [f64; 3] {
+        let [x, y, z, ..] = self.pose(robot);
+        [x, y, z]
+    }
     /// Path length in metres since the start.
     fn path_length(&self, robot: u32) -> f64;
     /// Contacts this robot took part in, each counted once from touch to parting.

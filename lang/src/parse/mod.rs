@@ -61,6 +61,11 @@ pub fn parse(file: u32, text: &str) -> (ast::File, Vec<Diagnostic>) {
     (tree, b.errors)
 }
 
+/// Whether a text is a sequence of items, by the grammar alone: what [`parse`] costs at least.
+pub fn recognise(text: &str) -> bool {
+    Grammar::parse(Rule::file, text).is_ok()
+}
+
 /// The parse tree of a text; `None` when its syntax is wrong, which [`parse`] explains.
 pub(crate) fn tree(text: &str) -> Option<pest::iterators::Pair<'_, Rule>> {
     nesting::check(text).ok()?;

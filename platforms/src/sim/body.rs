@@ -41,6 +41,9 @@ pub struct Place {
     pub path: f64,
 }
 
+/// So many past pieces are much.
+const MANY: usize = 16;
+
 /// Seconds from `a` to `b`.
 pub fn seconds(a: i64, b: i64) -> f64 {
     b.saturating_sub(a) as f64 * 1e-9
@@ -175,6 +178,12 @@ impl Body {
         [p.at[0], p.at[1], self.span[0], 0.0, 0.0, q[0], q[1]]
     }
 
+    /// Position in `map` at `t`.
+    pub fn position(&self, t: Time) -> [f64; 3] {
+        let [x, y] = self.place(t.0).at;
+        [x, y, self.span[0]]
+    }
+
     /// Cosine and sine of the heading at `t`.
     pub fn direction(&self, t: Time) -> Vec2 {
         let [z, w] = self.piece(t.0).quaternion(t.0);
@@ -189,6 +198,11 @@ impl Body {
     /// The end of what is planned.
     pub fn planned(&self) -> i64 {
         self.current.end
+    }
+
+    /// Whether much past motion is kept.
+    pub fn is_long(&self) -> bool {
+        self.past.len() > MANY
     }
 
     /// Ends what is planned at `t`, which is not before the start of the last piece.

@@ -25,9 +25,12 @@ use scene::Things;
 use schedule::Schedule;
 use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
 
-/// Contacts are checked at least that often (ns), so that past motion can be forgotten: with robots whose
-/// motion is planned as time goes on, and without.
-const CHECK: (i64, i64) = (100_000_000, 1_000_000_000);
+/// Motion is planned that far ahead at a time (ns), and past motion looked at: where much of it has piled up,
+/// contacts are checked, so that it can be forgotten.
+const AHEAD: i64 = 100_000_000;
+
+/// Contacts are checked at least that often (ns).
+const CHECK: i64 = 1_000_000_000;
 
 /// Commands are limited to this in size: beyond it arithmetic overflows.
 const LARGEST: f64 = 1e12;
@@ -38,6 +41,8 @@ pub struct Simulator {
     now: i64,
     /// All motion is planned up to here, at least.
     planned: i64,
+    /// Past motion was looked at last.
+    looked: i64,
     /// Robots, then movers.
     bodies: Vec<Body>,
     drives: Vec<Box<dyn Drive>>,
@@ -77,6 +82,7 @@ impl Simulator {
         Ok(Simulator {
             now: 0,
             planned: -1,
+            looked: 0,
             continuous: (0..platforms.len() as u32).filter(twists).collect(),
             collisions: Collisions::new(platforms.len(), &population.bodies),
             schedule: Schedule::new(scene, &chassis)?,
@@ -108,19 +114,38 @@ impl Simulator {
         }
     }
 
+    /// When past motion is looked at next.
+    fn look(&self) -> i64 {
+        let ahead = if self.continuous.is_empty() { CHECK } else { AHEAD };
+        self.looked.max(self.collisions.checked()).saturating_add(ahead)
+    }
+
     /// Goes on to `now`: plans, captures, and keeps the search for contacts up to date.
+    #[inline]
     fn advance(&mut self, now: i64) {
-        let often = if self.continuous.is_empty() { CHECK.1 } else { CHECK.0 };
+        let there = now == self.now && now <= self.planned && now < self.schedule.next_capture();
+        if !there {
+            self.go_on(now);
+        }
+    }
+
+    fn go_on(&mut self, now: i64) {
         loop {
-            let check = self.collisions.checked().max(0).saturating_add(often);
-            let t = self.schedule.next_capture().min(check);
+            let (capture, look) = (self.schedule.next_capture(), self.look());
+            let t = capture.min(look);
             if t > now || t == i64::MAX {
                 break;
             }
             self.extend(t);
-            self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things);
-            if t == check {
-                self.collisions.sweep(&self.bodies, &self.things, t);
+            if t == capture {
+                self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things);
+            }
+            if t == look {
+                self.looked = t;
+                let long = t - self.collisions.checked().max(0) >= CHECK;
+                if long || self.continuous.iter().any(|i| self.bodies[*i as usize].is_long()) {
+                    self.collisions.sweep(&self.bodies, &self.things, t);
+                }
             }
         }
         self.extend(now);
@@ -169,7 +194,7 @@ impl Platform for Simulator {
         let limited = |x: f64| x.clamp(-LARGEST, LARGEST);
         match (actuator, command) {
             (Some(Actuator::Twist), [a, b, c, d, e, f]) => {
-                let twist = [*a, *b, *c, *d, *e, *f].map(limited);
+                let twist = [limited(*a), limited(*b), limited(*c), limited(*d), limited(*e), limited(*f)];
                 if let Some((drive, body)) = self.robot(robot) {
                     drive.twist(body, now, twist, expires.0, checked);
                     let planned = body.planned();

@@ -12,6 +12,10 @@ impl WorldTruth for Simulator {
         }
     }
 
+    fn position(&self, robot: u32) -> [f64; 3] {
+        self.bodies.get(robot as usize).map_or([0.0; 3], |b| b.position(Time(self.now)))
+    }
+
     fn path_length(&self, robot: u32) -> f64 {
         self.bodies.get(robot as usize).map_or(0.0, |b| b.place(self.now).path)
     }

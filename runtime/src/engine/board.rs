@@ -157,7 +157,7 @@ impl Board {
         for s in 0..self.senders.len() {
             if let Some(slot) = self.newest(s, now, |_| true) {
                 let at = self.kept.stamps[slot].place;
-                self.sites.push(Site { at, sender: s as u32, message: slot as u32 });
+                self.sites.push(Site { at, sender: self.senders[s], message: slot as u32 });
             }
         }
         self.grid.build(&self.sites, self.channel.range.unwrap_or(f64::INFINITY));
@@ -210,11 +210,11 @@ impl Board {
                 range,
                 |site| {
                     let (mut d, mut slot) = (distance(site.at), site.message);
-                    if self.senders[site.sender as usize] == receiver || d > range * range {
+                    if d > range * range || site.sender == receiver {
                         return;
                     }
                     if self.channel.loss > 0.0 {
-                        match self.received(site.sender as usize, receiver, now) {
+                        match self.received(slot as usize / self.ring, receiver, now) {
                             Some(s) => slot = s as u32,
                             None => return,
                         }

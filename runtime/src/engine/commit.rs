@@ -54,9 +54,13 @@ impl Engine<'_> {
         if finish - release.release > info.deadline {
             self.late(release, finish, record);
         }
+        if info.worst == Time::ZERO {
+            items.iter().for_each(|item| self.apply(release.unit, item, log, record));
+            return;
+        }
         let mut later = Log::default();
         for item in items {
-            if info.worst > Time::ZERO && item.is_output() {
+            if item.is_output() {
                 put_off(item, log, &mut later);
             } else {
                 self.apply(release.unit, item, log, record);
@@ -234,7 +238,7 @@ impl Engine<'_> {
         let receivers = &self.subscribers[topic as usize];
         let ranged = board.channel.range.is_some() && !receivers.is_empty();
         let truth = if board.placed() || ranged { self.platform.truth() } else { None };
-        let place = |robot: u32| truth.map(|t| t.pose(robot)).map_or([0.0; 3], |p| [p[0], p[1], p[2]]);
+        let place = |robot: u32| truth.map_or([0.0; 3], |t| t.position(robot));
         let here = place(robot);
         let number = board.number(sender);
         board.publish(now, sender, registers, info.lifetime, record.unwrap_or(0), here);

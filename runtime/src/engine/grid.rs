@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Site {
     pub at: [f64; 3],
-    /// Sender.
+    /// Who sent it: an instance.
     pub sender: u32,
     /// Its message.
     pub message: u32,
@@ -42,7 +42,8 @@ impl Grid {
         let even = (2.0 * area / n).sqrt().max(2.0 * length / n);
         // Robots in a ring leave most of its square empty: then finer cells pay.
         let finest = (area / (8.0 * n)).sqrt().max(length / (4.0 * n));
-        let cell = even.min(range.max(finest));
+        // A little wider than the range, so that the cells around a place hold all within it.
+        let cell = even.min((1.000_001 * range).max(finest));
         self.cell =
             if cell.is_finite() && cell > 1e-9 { cell } else { 1e-9_f64.max(extent[0].max(extent[1])) };
         self.low = if sites.is_empty() { [0.0; 2] } else { low };
@@ -82,9 +83,20 @@ impl Grid {
         if self.sites.is_empty() {
             return;
         }
-        let cell_of = |a: usize| ((at[a] - self.low[a]) / self.cell).floor().clamp(-1e9, 1e9) as i64;
+        let cell_of = |a: usize| {
+            let x = ((at[a] - self.low[a]) / self.cell).clamp(-1e9, 1e9);
+            // Rounds down, without a call of `floor`.
+            x as i64 - i64::from(x < x as i64 as f64)
+        };
         let center = [cell_of(0), cell_of(1)];
         let size = [self.size[0] as i64, self.size[1] as i64];
+        if range < self.cell {
+            let [from, to] = [(center[0] - 1).max(0), (center[0] + 1).min(size[0] - 1)];
+            for y in (center[1] - 1).max(0)..=(center[1] + 1).min(size[1] - 1) {
+                self.row(y, from, to, &mut visit);
+            }
+            return;
+        }
         let gap = |a: usize| (-center[a]).max(center[a] - (size[a] - 1)).max(0);
         let reach = |a: usize| center[a].abs().max((size[a] - 1 - center[a]).abs());
         let mut ring = gap(0).max(gap(1));

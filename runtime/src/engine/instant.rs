@@ -288,9 +288,8 @@ impl Engine<'_> {
         }
         if placed && let Some(truth) = self.platform.truth() {
             for r in robots {
-                let [x, y, z, ..] = truth.pose(r);
                 if let Some(place) = self.places.get_mut(r as usize) {
-                    *place = [x, y, z];
+                    *place = truth.position(r);
                 }
             }
         }

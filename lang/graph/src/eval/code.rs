@@ -46,6 +46,7 @@ pub(super) enum Instr {
 
     Const { d: u32, k: u32 },
     Move { d: u32, a: u32 },
+    Move3 { d: u32, a: u32 },
     LoadState { d: u32, at: u32 },
     Load { space: Space, d: u32, at: u32 },
     Copy { space: Space, d: u32, at: u32, n: u32 },
@@ -73,6 +74,8 @@ pub(super) enum Instr {
     Abs { d: u32, a: u32 },
     Min { d: u32, a: u32, b: u32 },
     Max { d: u32, a: u32, b: u32 },
+    MinK { d: u32, a: u32, k: u32 },
+    MaxK { d: u32, a: u32, k: u32 },
     Power { d: u32, a: u32, n: i32 },
     PowerInt { d: u32, a: u32, n: i32 },
 
@@ -91,6 +94,8 @@ pub(super) enum Instr {
 
     Add3 { d: u32, a: u32, b: u32 },
     Sub3 { d: u32, a: u32, b: u32 },
+    /// `b` is a scalar.
+    Scale3 { d: u32, a: u32, b: u32 },
     AddN { n: u16, d: u32, a: u32, b: u32 },
     SubN { n: u16, d: u32, a: u32, b: u32 },
     NegN { n: u16, d: u32, a: u32 },
@@ -231,6 +236,8 @@ pub(super) enum Shape {
 pub(super) struct FunctionCode {
     /// First instruction.
     pub start: u32,
+    /// Whether it is written out where it is called.
+    pub short: bool,
     /// First register of the value, within the function's frame.
     pub result: u32,
     /// Registers of its frame, with those of the functions it calls.

@@ -47,6 +47,19 @@ fn copy_within(frame: &mut [f64], from: usize, to: usize, n: usize) -> Option<()
     Some(())
 }
 
+/// So few registers are copied one by one.
+const FEW: usize = 8;
+
+/// Copies a few registers to a place that does not overlap theirs.
+#[inline(always)]
+fn few(frame: &mut [f64], from: usize, to: usize, n: usize) -> Option<()> {
+    for i in 0..n {
+        let x = *frame.get(from + i)?;
+        *frame.get_mut(to + i)? = x;
+    }
+    Some(())
+}
+
 impl Program {
     /// The registers of a space.
     #[inline]
@@ -104,17 +117,14 @@ impl Program {
     }
 
     /// Puts what the body reads of item `i` where the body wants it.
-    #[inline]
-    pub(super) fn item(&self, l: &ListRef, i: usize, frame: &mut [f64], memory: &Memory<'_>) -> Option<()> {
+    #[inline(always)]
+    fn item(&self, l: &ListRef, i: usize, frame: &mut [f64], memory: &Memory<'_>) -> Option<()> {
         let (from, n) = (l.part.0 as usize, l.part.1 as usize);
-        if n == 0 {
-            return Some(());
-        }
         let (from, to) = (Program::place(l, i) + from, l.item as usize + from);
-        match l.space {
-            Space::Frame => copy_within(frame, from, to, n),
-            _ => self.transfer(l.space, from, frame, to, n, memory),
+        if l.space == Space::Frame && n <= FEW {
+            return few(frame, from, to, n);
         }
+        self.transfer(l.space, from, frame, to, n, memory)
     }
 
     /// Makes the first item current; false when there is none.
@@ -135,12 +145,12 @@ impl Program {
     #[inline(never)]
     pub(super) fn next_item(&self, list: u32, frame: &mut [f64], memory: &Memory<'_>) -> Option<bool> {
         let l = self.lists.get(list as usize)?;
-        let [index, count] = frame.get_mut(l.state as usize..)?.first_chunk_mut::<2>()?;
-        let next = index.to_bits() + 1;
-        if next >= count.to_bits() {
+        let at = l.state as usize;
+        let next = frame.get(at)?.to_bits() + 1;
+        if next >= frame.get(at + 1)?.to_bits() {
             return Some(false);
         }
-        *index = f64::from_bits(next);
+        *frame.get_mut(at)? = f64::from_bits(next);
         self.item(l, next as usize, frame, memory)?;
         Some(true)
     }
@@ -171,8 +181,9 @@ impl Program {
         memory: &Memory<'_>,
     ) -> Option<()> {
         let l = self.lists.get(list as usize)?;
-        let to = grow(l, frame, d, l.out_width as usize)?;
-        self.transfer(Space::Frame, a, frame, to, l.out_width as usize, memory)
+        let n = l.out_width as usize;
+        let to = grow(l, frame, d, n)?;
+        if n <= FEW { few(frame, a, to, n) } else { self.transfer(Space::Frame, a, frame, to, n, memory) }
     }
 
     /// The current item as an optional at `d` when its key, at `a`, is the least so far.

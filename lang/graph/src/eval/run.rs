@@ -172,6 +172,10 @@ impl Program {
 
                 Instr::Const { d, k } => set!(d, k!(k)),
                 Instr::Move { d, a } => set!(d, get!(a)),
+                Instr::Move3 { d, a } => {
+                    let v = vector!(a);
+                    *some!(some!(frame.get_mut(d as usize..)).first_chunk_mut::<3>()) = v;
+                }
                 Instr::LoadState { d, at } => set!(d, *some!(m.memory.states.get(at as usize))),
                 Instr::Load { space, d, at } => {
                     let slots = match space {
@@ -219,6 +223,14 @@ impl Program {
                     let (x, y) = (get!(a), get!(b));
                     set!(d, if y > x { y } else { x })
                 }
+                Instr::MinK { d, a, k } => {
+                    let (x, y) = (get!(a), k!(k));
+                    set!(d, if y < x { y } else { x })
+                }
+                Instr::MaxK { d, a, k } => {
+                    let (x, y) = (get!(a), k!(k));
+                    set!(d, if y > x { y } else { x })
+                }
 
                 Instr::Lt { d, a, b } => truth!(d, get!(a) < get!(b)),
                 Instr::Le { d, a, b } => truth!(d, get!(a) <= get!(b)),
@@ -233,6 +245,10 @@ impl Program {
 
                 Instr::Add3 { d, a, b } => set_vector!(d, g::add(vector!(a), vector!(b))),
                 Instr::Sub3 { d, a, b } => set_vector!(d, g::sub(vector!(a), vector!(b))),
+                Instr::Scale3 { d, a, b } => {
+                    let (v, by) = (vector!(a), get!(b));
+                    set_vector!(d, v.map(|x| x * by))
+                }
                 Instr::Dot { d, a, b } => {
                     let ([ax, ay, az], [bx, by, bz]) = (vector!(a), vector!(b));
                     finite!(d, ax * bx + ay * by + az * bz)

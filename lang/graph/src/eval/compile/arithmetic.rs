@@ -223,12 +223,8 @@ impl Compiler<'_> {
                 }
                 Instr::MatrixProduct { r: *r, n: *n, c: *c, d, a, b }
             }
-            (Binary::Mul, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => {
-                Instr::ScaleN { n, d, a, b }
-            }
-            (Binary::Mul, s, t) if typing::number(s).is_some() && same_layout(t, &e.ty) => {
-                Instr::ScaleN { n, d, a: b, b: a }
-            }
+            (Binary::Mul, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => scale(n, d, a, b),
+            (Binary::Mul, s, t) if typing::number(s).is_some() && same_layout(t, &e.ty) => scale(n, d, b, a),
             (Binary::Div, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => {
                 Instr::DivN { n, d, a, b }
             }
@@ -311,4 +307,9 @@ fn compare_constant(op: Binary, d: u32, a: u32, k: u32) -> Instr {
         Binary::Eq => Instr::EqK { d, a, k },
         _ => Instr::NeK { d, a, k },
     }
+}
+
+/// The values from `a` times the number at `b`.
+fn scale(n: u16, d: u32, a: u32, b: u32) -> Instr {
+    if n == 3 { Instr::Scale3 { d, a, b } } else { Instr::ScaleN { n, d, a, b } }
 }

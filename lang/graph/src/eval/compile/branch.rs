@@ -44,6 +44,7 @@ impl Compiler<'_> {
     fn branch_within(&mut self, e: &Expr, when: bool, jumps: &mut Vec<u32>) -> Compiled<()> {
         match (&e.op, e.args.as_slice()) {
             (Op::Not, [of]) => return self.branch(of, !when, jumps),
+            (Op::Call(f), _) if self.branch_call(e, *f, when, jumps)? => return Ok(()),
             (Op::Binary(op @ (Binary::And | Binary::Or)), [l, r]) => {
                 // `and` is decided by a false side, `or` by a true one.
                 if when == (*op == Binary::Or) {

@@ -1,7 +1,7 @@
 //! Code for calls of built-in functions.
 
 use super::emit::error;
-use super::expr::{arguments, gives};
+use super::expr::{Operand, arguments, gives};
 use super::{Compiled, Compiler, Place};
 use crate::eval::code::Instr;
 use crate::{Expr, Function, Type, pattern::Bindings};
@@ -61,19 +61,30 @@ impl Compiler<'_> {
                 self.emit(instr, e.span);
                 Ok(Place::frame(d))
             }
-            F::Min | F::Max | F::Atan2 | F::Hypot | F::Modulo => {
+            F::Min | F::Max => {
+                let [x, y] = arguments(e)?;
+                self.check_call(e, f)?;
+                let top = self.body.top;
+                let (a, b) = (self.scalar(x)?, self.operand(y)?);
+                self.body.top = top;
+                let d = self.dest(dest, 1, e.span)?;
+                let instr = match (f, b) {
+                    (F::Min, Operand::Register(b)) => Instr::Min { d, a, b },
+                    (F::Min, Operand::Constant(k)) => Instr::MinK { d, a, k },
+                    (_, Operand::Register(b)) => Instr::Max { d, a, b },
+                    (_, Operand::Constant(k)) => Instr::MaxK { d, a, k },
+                };
+                self.emit(instr, e.span);
+                Ok(Place::frame(d))
+            }
+            F::Atan2 | F::Hypot | F::Modulo => {
                 let [x, y] = arguments(e)?;
                 self.check_call(e, f)?;
                 let top = self.body.top;
                 let (a, b) = (self.scalar(x)?, self.scalar(y)?);
                 self.body.top = top;
                 let d = self.dest(dest, 1, e.span)?;
-                let instr = match f {
-                    F::Min => Instr::Min { d, a, b },
-                    F::Max => Instr::Max { d, a, b },
-                    _ => Instr::Function2 { f, d, a, b },
-                };
-                self.emit(instr, e.span);
+                self.emit(Instr::Function2 { f, d, a, b }, e.span);
                 Ok(Place::frame(d))
             }
             F::Clamp

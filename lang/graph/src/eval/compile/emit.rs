@@ -82,6 +82,7 @@ impl Compiler<'_> {
         }
         let instr = match (space, n) {
             (Space::Frame, 1) => Instr::Move { d, a: from },
+            (Space::Frame, 3) => Instr::Move3 { d, a: from },
             (Space::Constants, 1) => Instr::Const { d, k: from },
             (Space::States, 1) => Instr::LoadState { d, at: from },
             (_, 1) => Instr::Load { space, d, at: from },

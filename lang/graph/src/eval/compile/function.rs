@@ -1,14 +1,15 @@
-//! Functions of the mission: compiled once, before the block that calls them.
+//! Functions of the mission: compiled once, before the block that calls them. Short ones are written out
+//! where they are called: their arguments need not be copied then.
 
 use super::emit::error;
 use super::expr::gives;
-use super::{Body, Compiled, Compiler, Place};
+use super::{Body, Compiled, Compiler, MAX_DEPTH, Place};
 use crate::{
-    Expr, Op, Span,
+    Expr, Op, Span, UserFunction,
     eval::code::{FunctionCode, Instr},
 };
 
-impl Compiler<'_> {
+impl<'g> Compiler<'g> {
     /// Compiles a function and all those it calls.
     pub(super) fn ensure_function(&mut self, root: u32, at: Span) -> Compiled<()> {
         let mut waiting: Vec<(u32, Vec<u32>)> = Vec::new();
@@ -66,11 +67,13 @@ impl Compiler<'_> {
         match made {
             Ok(result) => {
                 let (frame, bound) = (self.body.peak, self.body.cost);
+                let short =
+                    self.program.code.len() - start <= SHORT && operators(&function.body) <= SHORT_TEXT;
                 let depth = self.body.calls + 1;
                 if depth > MAX_CALLS {
                     return error(at, format!("functions call each other more than {MAX_CALLS} deep"));
                 }
-                let code = FunctionCode { start: start as u32, result, frame, bound, depth };
+                let code = FunctionCode { start: start as u32, short, result, frame, bound, depth };
                 self.program.functions.push(code);
                 Ok((self.program.functions.len() - 1) as u32)
             }
@@ -90,15 +93,16 @@ impl Compiler<'_> {
         Ok(at)
     }
 
-    #[inline(never)]
-    pub(super) fn gen_call(&mut self, e: &Expr, function: u32, dest: Option<u32>) -> Compiled<Place> {
+    /// A function that is called, and its code.
+    fn callee(&self, e: &Expr, function: u32) -> Compiled<(&'g UserFunction, u32, FunctionCode)> {
         let index = match self.compiled.get(&function) {
             Some(Ok(index)) => *index,
             Some(Err(why)) => return Err(Box::new(why.clone())),
             None => return error(e.span, format!("there is no function {function} here")),
         };
+        let functions: &'g [UserFunction] = self.functions;
         let (Some(f), Some(code)) =
-            (self.functions.get(function as usize), self.program.functions.get(index as usize).copied())
+            (functions.get(function as usize), self.program.functions.get(index as usize).copied())
         else {
             return error(e.span, format!("there is no function {function}"));
         };
@@ -106,6 +110,15 @@ impl Compiler<'_> {
             return error(e.span, format!("`{}` takes {} arguments", f.name, f.parameters.len()));
         }
         gives(e, &f.body.ty)?;
+        Ok((f, index, code))
+    }
+
+    #[inline(never)]
+    pub(super) fn gen_call(&mut self, e: &Expr, function: u32, dest: Option<u32>) -> Compiled<Place> {
+        let (f, index, code) = self.callee(e, function)?;
+        if self.may_write_out(code) {
+            return self.written_out(e, f, code, |c| c.generate(&f.body, dest));
+        }
         let n = self.width(&e.ty, e.span)?;
         let base = self.alloc(code.frame, e.span)?;
         let mut at = base;
@@ -121,6 +134,63 @@ impl Compiler<'_> {
         self.body.cost = self.body.cost.saturating_add(code.bound);
         Ok(self.settle(Place::frame(base + code.result), dest, n, e.span))
     }
+
+    /// Code that jumps when a function that is written out gives `when`; false when it is to be called.
+    #[inline(never)]
+    pub(super) fn branch_call(
+        &mut self,
+        e: &Expr,
+        function: u32,
+        when: bool,
+        jumps: &mut Vec<u32>,
+    ) -> Compiled<bool> {
+        let (f, _, code) = self.callee(e, function)?;
+        let short = self.may_write_out(code);
+        if short {
+            self.written_out(e, f, code, |c| c.branch(&f.body, when, jumps))?;
+        }
+        Ok(short)
+    }
+
+    /// Whether a function is written out here.
+    fn may_write_out(&self, code: FunctionCode) -> bool {
+        code.short && self.body.depth < MAX_DEPTH / 2
+    }
+
+    /// Compiles `body` with the parameters of a function standing for its arguments, wherever these lie.
+    fn written_out<T>(
+        &mut self,
+        e: &Expr,
+        f: &UserFunction,
+        code: FunctionCode,
+        body: impl FnOnce(&mut Self) -> Compiled<T>,
+    ) -> Compiled<T> {
+        let (mut locals, width) = self.lay_out(&f.locals, e.span)?;
+        let base = self.alloc(width, e.span)?;
+        locals.iter_mut().for_each(|l| l.0 += base);
+        let mut bound = vec![None; locals.len()];
+        for ((arg, (_, t)), bound) in e.args.iter().zip(&f.parameters).zip(&mut bound) {
+            *bound = Some(self.gen_as(arg, t, None)?);
+        }
+        self.body.calls = self.body.calls.max(code.depth);
+        let locals = std::mem::replace(&mut self.body.locals, locals);
+        let bound = std::mem::replace(&mut self.body.bound, bound);
+        let agent = self.agent.take();
+        let made = body(self);
+        (self.body.locals, self.body.bound, self.agent) = (locals, bound, agent);
+        made
+    }
+}
+
+/// Most instructions of a function that is written out where it is called, and most operators of the text it
+/// is made from: so functions of functions do not grow without end.
+const SHORT: usize = 24;
+const SHORT_TEXT: usize = 48;
+
+fn operators(e: &Expr) -> usize {
+    let mut n = 0;
+    e.walk(&mut |_| n += 1);
+    n
 }
 
 /// How deep functions may call each other.
