@@ -7,7 +7,13 @@ use std::{
     process::{Command, Stdio},
 };
 
-const MISSION: &str = "missions/khepera/sim1.soi";
+/// The mission that `make run` runs.
+fn flagship() -> String {
+    let makefile = std::fs::read_to_string(support::project("Makefile")).expect("the Makefile");
+    let line =
+        makefile.lines().find_map(|l| l.strip_prefix("MISSION ?= ")).expect("a mission in the Makefile");
+    support::project(line.trim())
+}
 
 /// Seconds that the program takes with these arguments.
 fn process(arguments: &[&str]) -> f64 {
@@ -23,17 +29,17 @@ fn process(arguments: &[&str]) -> f64 {
 
 fn main() {
     let mut criterion = support::criterion().sample_size(50);
-    let mission = support::project(MISSION);
-    let trace = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("sim1.mcap");
+    let mission = flagship();
+    let trace = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("flagship.mcap");
     let trace = trace.to_string_lossy();
     let run = || process(&["run", &mission, "--trace", &trace]);
     let check = || process(&["check", &mission]);
-    let mut group = criterion.benchmark_group("process, sim1");
+    let mut group = criterion.benchmark_group("process");
     support::add(&mut group, "soifra run", run);
     support::add(&mut group, "soifra check", check);
     group.finish();
     if !support::trying() {
-        let what = "`soifra run` of sim1 with trace to `soifra check`";
+        let what = "`soifra run` of what `make run` runs, with trace, to `soifra check`";
         support::verdict("run_check", what, support::ratio(101, run, check), Some(3.3));
     }
     criterion.final_summary();

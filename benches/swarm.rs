@@ -1,5 +1,6 @@
 //! A circle swap against dodgy_2d, and time and memory for many robots. The rules are those of
 //! `missions/swarm/traffic.soi`; one thread, as dodgy_2d has.
+#![expect(clippy::print_stdout, reason = "a bench tells its figures on the terminal")]
 
 #[path = "support/dodgy.rs"]
 mod dodgy;

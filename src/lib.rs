@@ -2,6 +2,7 @@
 //! Everything below it is pure or talks through traits.
 
 pub mod bars;
+mod bench_ratios;
 pub mod cli;
 pub mod codes;
 pub mod commands;

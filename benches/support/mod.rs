@@ -2,6 +2,7 @@
 //!
 //! Every ratio is taken in pairs: ours and the reference run in turn, and the median of the ratios of
 //! neighbours counts. So what else the machine does weighs on both.
+#![expect(clippy::print_stdout, reason = "a bench tells its ratios on the terminal")]
 #![allow(dead_code, reason = "every bench uses a part of it")]
 
 use criterion::{BenchmarkGroup, Criterion, measurement::WallTime};
@@ -42,7 +43,8 @@ pub fn seconds<T>(what: impl FnOnce() -> T) -> f64 {
 /// The median ratio of two routines that run in turn; each returns what it cost.
 pub fn ratio(pairs: usize, mut ours: impl FnMut() -> f64, mut reference: impl FnMut() -> f64) -> f64 {
     // The first of each warms caches and is not counted.
-    (ours(), reference());
+    ours();
+    reference();
     let ratios = (0..pairs.max(1)).map(|i| {
         // Neither is always the one that comes first.
         if i % 2 == 0 {

@@ -1,6 +1,6 @@
 //! `soifra measure`: runs the studies of a file and writes their tables.
 
-use crate::{bars, execute, exit::Exit, interrupt, output, report::Refusal};
+use crate::{bars, bench_ratios, execute, exit::Exit, interrupt, output, report::Refusal};
 use clap::{Args, ValueHint};
 
 /// Arguments.
@@ -21,6 +21,9 @@ pub struct Arguments {
     /// Only the study of this name
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
+    /// A folder with what the benches wrote; their ratios come last on the page
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    benches: Option<String>,
     /// A line for the head of the tables, as the commit
     #[arg(long, value_name = "TEXT")]
     remark: Option<String>,
@@ -46,6 +49,9 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             output::print(&format!("missed: {} {} is {value}\n", study.name, v.metric))?;
             missed += 1;
         }
+    }
+    if let Some(folder) = &a.benches {
+        page += &bench_ratios::markdown(folder)?;
     }
     bars::write_page(&a.output, &page)?;
     Ok(if missed > 0 { Exit::Failed } else { Exit::Success })
