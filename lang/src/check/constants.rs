@@ -2,21 +2,24 @@
 
 use soifra_graph::{
     Expr, Graph, Texts, Type, Value,
-    eval::{self, Fault, FaultKind},
+    eval::{self, Fault, FaultKind, Parameters},
 };
 
 /// Evaluates expressions with parameters at their defaults.
 pub struct Constants<'a> {
     g: &'a Graph,
-    params: Vec<(Type, Value)>,
+    params: Parameters,
     texts: Texts,
 }
 
 impl<'a> Constants<'a> {
     /// For the expressions of a graph.
     pub fn new(g: &'a Graph) -> Self {
-        let params = g.params.iter().map(|p| (p.ty.clone(), p.default.clone())).collect();
-        Constants { g, params, texts: g.texts.clone() }
+        let mut texts = g.texts.clone();
+        let params = g.params.iter().map(|p| (&p.ty, &p.default));
+        // Types have been checked before: there are values for all, or none is looked at.
+        let params = Parameters::new(&g.types, &mut texts, params).unwrap_or_default();
+        Constants { g, params, texts }
     }
 
     /// The value of a scene expression for the `index`-th of an array; `None` when it is drawn.

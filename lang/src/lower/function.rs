@@ -97,7 +97,7 @@ impl Checker<'_> {
                 .filter(|f| f.implements.as_ref().is_some_and(|i| i.name == *name))
                 .collect();
             let variants: Vec<Name> = implementations.iter().map(|f| f.name.name.clone()).collect();
-            self.types.enums.insert(name.clone(), soifra_graph::Enum { name: name.clone(), variants });
+            self.add_enum(name, variants);
             let wanted: Option<Vec<Type>> =
                 interface.params.iter().map(|(_, t)| self.resolve_type(t, None)).collect();
             let (Some(wanted), Some(result)) = (wanted, self.resolve_type(&interface.result, None)) else {

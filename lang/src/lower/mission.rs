@@ -61,20 +61,21 @@ impl<'a> Checker<'a> {
             decls,
             errors: Vec::new(),
             types: Default::default(),
+            variants: BTreeMap::new(),
             texts: Default::default(),
-            params: Vec::new(),
+            params: Default::default(),
             services: BTreeMap::new(),
             functions: Vec::new(),
             function_index: BTreeMap::new(),
             broken: Default::default(),
-            topics: Vec::new(),
+            topics: Default::default(),
             topic_capacity: Vec::new(),
             agent: Default::default(),
-            agents: Vec::new(),
-            robots: Vec::new(),
-            goals: Vec::new(),
+            agents: Default::default(),
+            robots: Default::default(),
+            goals: Default::default(),
             mission_lets: BTreeMap::new(),
-            regions: Vec::new(),
+            regions: Default::default(),
             body: Body::new(Place::Constant),
             used_constants: Default::default(),
             written_statements: 0,
@@ -115,7 +116,7 @@ impl<'a> Checker<'a> {
         for (name, e) in &self.decls.enums {
             self.distinct(e.variants.iter());
             let variants = e.variants.iter().map(|v| v.name.clone()).collect();
-            self.types.enums.insert(name.clone(), soifra_graph::Enum { name: name.clone(), variants });
+            self.add_enum(name, variants);
         }
         for name in self.decls.records.keys() {
             self.types
@@ -194,7 +195,7 @@ impl<'a> Checker<'a> {
                 .filter(|f| self.decls.functions[*f].implements.as_ref().is_some_and(|i| i.name == *name))
                 .cloned()
                 .collect();
-            self.types.enums.insert(name.clone(), soifra_graph::Enum { name: name.clone(), variants });
+            self.add_enum(name, variants);
         }
         let mut out = Vec::new();
         for p in list {
@@ -417,8 +418,8 @@ impl<'a> Checker<'a> {
             functions: std::mem::take(&mut self.functions),
             world,
             platforms,
-            topics: std::mem::take(&mut self.topics),
-            agents: std::mem::take(&mut self.agents),
+            topics: std::mem::take(&mut self.topics).into_items(),
+            agents: std::mem::take(&mut self.agents).into_items(),
             robots,
             step,
             goals,

@@ -162,7 +162,7 @@ impl<'a> Checker<'a> {
                 asked = Some(e.span);
             }
         };
-        for a in &self.agents {
+        for a in self.agents.iter() {
             crate::check::walk::agent(a, &mut look);
         }
         let Some(at) = asked else { return };

@@ -65,7 +65,7 @@ impl<'a> Checker<'a> {
                 }
             },
             TriggerKind::Topic(topic, name) => {
-                match self.topics.iter().position(|x| x.channel.name == topic.name) {
+                match self.topics.position(&topic.name) {
                     Some(i) => {
                         let ty = self.topics[i].ty.clone();
                         Trigger::Message { topic: i as u32, local: body.bind(name, &ty) }

@@ -75,7 +75,7 @@ impl Checker<'_> {
             }
             _ => {}
         }
-        if let Some(i) = self.params.iter().position(|(n, _, _)| *n == f.name)
+        if let Some(i) = self.params.position(&f.name)
             && let Some(interface) = self.services.get(&(i as u32)).cloned()
         {
             return self.service(i as u32, &interface, f, given, span);
@@ -382,7 +382,7 @@ impl Checker<'_> {
             );
             return None;
         };
-        let Some(i) = self.topics.iter().position(|t| *t.channel.name == *name) else {
+        let Some(i) = self.topics.position(&name) else {
             let names: Vec<String> = self.topics.iter().map(|t| t.channel.name.to_string()).collect();
             let d = unknown(code::UNKNOWN_NAME, "topic", &name, at, names.iter().map(String::as_str));
             self.report(d);
@@ -421,8 +421,8 @@ impl Checker<'_> {
             );
             return None;
         }
-        let Some(i) = self.goals.iter().position(|g| *g == name) else {
-            let names = self.goals.clone();
+        let Some(i) = self.goals.position(&name) else {
+            let names = self.goals.to_vec();
             let d = unknown(code::UNKNOWN_NAME, "goal", &name, value.span, names.iter().map(|n| &**n));
             self.report(d);
             return None;

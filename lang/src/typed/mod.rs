@@ -3,10 +3,13 @@
 mod call;
 mod choice;
 mod expr;
+mod indexed;
 mod lists;
 mod names;
 mod stmt;
 mod types;
+
+pub use indexed::Indexed;
 
 use crate::{ast, code, decls::Decls};
 use soifra_graph::{Diagnostic, Expr, Name, Op, Span, Stmt, Texts, Topic, Type, TypeTable, UserFunction};
@@ -110,10 +113,12 @@ pub struct Checker<'a> {
     pub errors: Vec<Diagnostic>,
     /// Records and enums lowered so far (all declared ones, from the start).
     pub types: TypeTable,
+    /// Enums by the variants that they have.
+    pub variants: BTreeMap<Name, BTreeSet<Name>>,
     /// Constant texts.
     pub texts: Texts,
     /// Parameters: name, type, place.
-    pub params: Vec<(Name, Type, Span)>,
+    pub params: Indexed<(Name, Type, Span)>,
     /// Interface of a parameter that selects a service, by parameter index.
     pub services: BTreeMap<u32, Name>,
     /// Functions lowered so far.
@@ -123,21 +128,21 @@ pub struct Checker<'a> {
     /// Functions that could not be lowered: reported once, where they stand.
     pub broken: BTreeSet<Name>,
     /// Topics: name and message type.
-    pub topics: Vec<Topic>,
+    pub topics: Indexed<Topic>,
     /// Capacity of `heard` for each topic.
     pub topic_capacity: Vec<u32>,
     /// The agent whose body is being checked.
     pub agent: AgentScope<'a>,
     /// States and parameters of agents lowered so far, for beliefs.
-    pub agents: Vec<soifra_graph::Agent>,
+    pub agents: Indexed<soifra_graph::Agent>,
     /// Robot groups: name, whether an array, agents by index.
-    pub robots: Vec<(Name, bool, Vec<u32>)>,
+    pub robots: Indexed<(Name, bool, Vec<u32>)>,
     /// Goals, by name.
-    pub goals: Vec<Name>,
+    pub goals: Indexed<Name>,
     /// Mission-level constants.
     pub mission_lets: BTreeMap<Name, &'a ast::Constant>,
     /// World regions, by name.
-    pub regions: Vec<Name>,
+    pub regions: Indexed<Name>,
     /// The body being checked.
     pub body: Body,
     /// File-level constants that something uses.
@@ -164,6 +169,14 @@ impl<'a> Checker<'a> {
     /// Reports an error.
     pub fn report(&mut self, d: Diagnostic) {
         self.errors.push(d);
+    }
+
+    /// Adds an enum, or gives one that was added its variants.
+    pub fn add_enum(&mut self, name: &Name, variants: Vec<Name>) {
+        for v in &variants {
+            self.variants.entry(v.clone()).or_default().insert(name.clone());
+        }
+        self.types.enums.insert(name.clone(), soifra_graph::Enum { name: name.clone(), variants });
     }
 
     /// Remembers that the declaration of `name` is wrong.
@@ -282,7 +295,7 @@ impl<'a> Checker<'a> {
         let known = soifra_graph::eval::Known {
             types: &self.types,
             functions: &self.functions,
-            params: &[],
+            params: &Default::default(),
             locals: &locals,
         };
         match soifra_graph::eval::constant(e, &known, &mut self.texts) {

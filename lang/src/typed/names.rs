@@ -23,7 +23,7 @@ impl<'a> Checker<'a> {
         if let Some(e) = self.agent_name(name, span) {
             return e;
         }
-        if let Some(i) = self.params.iter().position(|(n, _, _)| n == name) {
+        if let Some(i) = self.params.position(name) {
             let ty = self.params[i].1.clone();
             if self.body.place == Place::Constant {
                 self.report(
@@ -195,8 +195,9 @@ impl<'a> Checker<'a> {
         {
             return make(e);
         }
+        let of = |e: &Name| self.types.enums.get(e).is_some_and(|e| e.variants.contains(name));
         let with: Vec<Name> =
-            self.types.enums.values().filter(|e| e.variants.contains(name)).map(|e| e.name.clone()).collect();
+            self.variants.get(name).into_iter().flatten().filter(|e| of(e)).cloned().collect();
         match with.as_slice() {
             [] => None,
             [one] => make(one),
@@ -232,7 +233,7 @@ impl<'a> Checker<'a> {
                 Some(None)
             }
             _ => {
-                let i = self.regions.iter().position(|r| r == name)?;
+                let i = self.regions.position(name)?;
                 Some(Some(GExpr::constant(Value::Int(i as i64), Type::Handle("Region".into()), span)))
             }
         }
@@ -291,7 +292,7 @@ impl<'a> Checker<'a> {
                     let name = Ident { name: "robot".into(), span: on.span };
                     return Some(self.of_subject(subject, &name.name, field, span));
                 }
-                let agent = self.agents.iter().position(|a| a.name == *first)?;
+                let agent = self.agents.position(first)?;
                 Some(self.believed(None, agent, field, span))
             }
         }
@@ -302,7 +303,7 @@ impl<'a> Checker<'a> {
         if &**name == "robot" {
             return Some(None);
         }
-        self.robots.iter().position(|(n, _, _)| n == name).map(|i| Some(i as u32))
+        self.robots.position(name).map(|i| Some(i as u32))
     }
 
     fn of_subject(&mut self, subject: Option<u32>, middle: &str, field: &Ident, span: Span) -> Option<GExpr> {
@@ -322,7 +323,7 @@ impl<'a> Checker<'a> {
                 let e = self.own(field, span)?;
                 Some(self.for_robot(subject, e))
             }
-            agent => match self.agents.iter().position(|a| *a.name == *agent) {
+            agent => match self.agents.position(agent) {
                 Some(agent) => self.believed(subject, agent, field, span),
                 None => {
                     let names: Vec<String> =

@@ -89,7 +89,7 @@ impl<'a> Checker<'a> {
                 GStmtKind::Command(i as u32, self.typed(value, &ty)?)
             }
             StmtKind::Publish(topic, value) => {
-                let Some(i) = self.topics.iter().position(|t| t.channel.name == topic.name) else {
+                let Some(i) = self.topics.position(&topic.name) else {
                     let names: Vec<Name> = self.topics.iter().map(|t| t.channel.name.clone()).collect();
                     let d = unknown(
                         code::UNKNOWN_NAME,
@@ -183,7 +183,7 @@ impl<'a> Checker<'a> {
             let ty = self.agent.states[i].1.clone();
             return Some(GStmtKind::Set(i as u32, self.typed(value, &ty)?));
         }
-        if let Some(i) = self.params.iter().position(|(n, _, _)| *n == name.name) {
+        if let Some(i) = self.params.position(&name.name) {
             let ty = self.params[i].1.clone();
             return Some(GStmtKind::SetParam(i as u32, self.typed(value, &ty)?));
         }

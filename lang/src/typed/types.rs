@@ -2,7 +2,7 @@
 
 use super::Checker;
 use crate::{ast::*, code, decls::unknown};
-use soifra_graph::{Diagnostic, Dim, Enum as GraphEnum, Frame, Type, dim::QUANTITIES};
+use soifra_graph::{Diagnostic, Dim, Frame, Type, dim::QUANTITIES};
 
 impl Checker<'_> {
     /// Resolves a written type. `owner` names an inline enum after what it is declared for.
@@ -40,7 +40,7 @@ impl Checker<'_> {
                 self.distinct(variants.iter());
                 let name = owner.name.clone();
                 let variants = variants.iter().map(|v| v.name.clone()).collect();
-                self.types.enums.insert(name.clone(), GraphEnum { name: name.clone(), variants });
+                self.add_enum(&name, variants);
                 Some(Type::Enum(name))
             }
             TypeKind::Service(interface) => {

@@ -1,7 +1,30 @@
 //! Values of expressions that depend on nothing but given parameters and locals.
 
-use super::{Compiler, Fault, FaultKind, Memory, NoEnv};
+use super::{Compiler, Fault, FaultKind, Layout, Memory, NoEnv};
 use crate::{Expr, Function, Op, Texts, Type, TypeTable, UserFunction, Value};
+
+/// Parameters and their values, laid out once for the many expressions that may name them.
+#[derive(Debug, Clone, Default)]
+pub struct Parameters {
+    layout: Layout,
+    registers: Vec<f64>,
+}
+
+impl Parameters {
+    /// Parameters in order: type and value; `None` when a value is not of its type. Texts that are new are
+    /// added to `texts`.
+    pub fn new<'t>(
+        types: &TypeTable,
+        texts: &mut Texts,
+        params: impl IntoIterator<Item = (&'t Type, &'t Value)> + Clone,
+    ) -> Option<Self> {
+        let mut registers = Vec::new();
+        for (t, value) in params.clone() {
+            value.flatten(t, types, texts, &mut registers)?;
+        }
+        Some(Parameters { layout: Layout::new(types, params.into_iter().map(|(t, _)| t)), registers })
+    }
+}
 
 /// What a constant expression may depend on.
 #[derive(Debug, Clone, Copy)]
@@ -10,8 +33,8 @@ pub struct Known<'a> {
     pub types: &'a TypeTable,
     /// Functions.
     pub functions: &'a [UserFunction],
-    /// Parameters in order: type and value.
-    pub params: &'a [(Type, Value)],
+    /// Parameters.
+    pub params: &'a Parameters,
     /// Locals in order: type, and value where there is one; the others may be bound inside.
     pub locals: &'a [(Type, Option<Value>)],
 }
@@ -20,15 +43,14 @@ pub struct Known<'a> {
 ///
 /// # Errors
 /// A fault of the evaluation; what is not constant (readings, states, draws …) is
-/// [`FaultKind::Unavailable`], a malformed expression or a given value that is not of its type
+/// [`FaultKind::Unavailable`], a malformed expression or a given local that is not of its type
 /// [`FaultKind::Refused`].
 pub fn constant(e: &Expr, known: &Known<'_>, texts: &mut Texts) -> Result<Value, Fault> {
     if let Op::Const(value) = &e.op {
         return Ok(value.clone());
     }
-    let (mut variable, mut with_params) = (None, !known.functions.is_empty());
+    let mut variable = None;
     e.walk(&mut |e| {
-        with_params |= matches!(e.op, Op::Param(_));
         if variable.is_none() {
             variable = not_constant(&e.op, known).map(|what| (what, e.span));
         }
@@ -38,11 +60,6 @@ pub fn constant(e: &Expr, known: &Known<'_>, texts: &mut Texts) -> Result<Value,
     }
     let refused = |text: &str| Fault { kind: FaultKind::Refused(text.into()), at: e.span };
 
-    let mut params = Vec::new();
-    for (t, value) in known.params.iter().filter(|_| with_params) {
-        let known = value.flatten(t, known.types, texts, &mut params);
-        known.ok_or_else(|| refused("a parameter has a value that is not of its type"))?;
-    }
     let locals: Vec<Type> = known.locals.iter().map(|(t, _)| t.clone()).collect();
     let mut given = Vec::new();
     for (i, (t, value)) in known.locals.iter().enumerate() {
@@ -55,9 +72,7 @@ pub fn constant(e: &Expr, known: &Known<'_>, texts: &mut Texts) -> Result<Value,
     }
 
     let mut compiler = Compiler::new(known.types, texts, known.functions);
-    if with_params {
-        compiler.params(known.params.iter().map(|(t, _)| t));
-    }
+    compiler.params(&known.params.layout);
     let mut scope = compiler.scope(&locals)?;
     let block = compiler.expr(&mut scope, e)?;
     let program = compiler.finish();
@@ -69,7 +84,7 @@ pub fn constant(e: &Expr, known: &Known<'_>, texts: &mut Texts) -> Result<Value,
             to.copy_from_slice(&registers);
         }
     }
-    let mut memory = Memory { states: &mut [], arguments: &[], params: &params };
+    let mut memory = Memory { states: &mut [], arguments: &[], params: &known.params.registers };
     program.run(&block, &mut frame, &mut memory, &mut NoEnv)?;
     let from = block.result as usize;
     let registers = frame.get(from..from + block.width as usize).unwrap_or_default();
@@ -81,7 +96,7 @@ fn not_constant(op: &Op, known: &Known<'_>) -> Option<&'static str> {
     match op {
         Op::State(_) | Op::Believed(..) => Some("the state of an agent"),
         Op::Argument(_) => Some("an argument of an agent"),
-        Op::Param(i) if *i as usize >= known.params.len() => Some("a parameter"),
+        Op::Param(i) if *i as usize >= known.params.layout.slots() => Some("a parameter"),
         Op::Reading(_) => Some("a sensor"),
         Op::Heard(_) => Some("a topic"),
         Op::Now => Some("the time"),

@@ -25,7 +25,7 @@ mod widths;
 
 pub use code::Program;
 pub use compile::{Block, Compiler, Scope};
-pub use constant::{Known, constant};
+pub use constant::{Known, Parameters, constant};
 pub use draw::sample;
 pub use env::{Effect, Env, NoEnv};
 pub use fault::{CompileError, Fault, FaultKind};

@@ -326,7 +326,7 @@ fn functions_call_each_other_but_not_themselves() {
     let endless = function("endless", call_of(2, local(0, n.clone())));
     let types = TypeTable::default();
     let functions = [square, fourth, endless];
-    let known = Known { types: &types, functions: &functions, params: &[], locals: &[] };
+    let known = Known { types: &types, functions: &functions, params: &Parameters::default(), locals: &[] };
     let of = |e: &Expr| eval::constant(e, &known, &mut Texts::default());
     let e = binary(Binary::Add, call_of(1, number(3.0)), call_of(0, number(2.0)));
     assert_eq!(of(&e), Ok(Value::Number(85.0)));
@@ -339,6 +339,8 @@ fn functions_call_each_other_but_not_themselves() {
 fn constants_depend_on_what_is_given_only() {
     let types = types();
     let params = [(LENGTH, Value::Number(2.0)), (list(LENGTH, 3), Value::List(vec![Value::Number(4.0)]))];
+    let given = params.iter().map(|(t, v)| (t, v));
+    let params = Parameters::new(&types, &mut Texts::default(), given).unwrap();
     let locals = [(Type::Int, Some(Value::Int(3))), (LENGTH, None)];
     let known = Known { types: &types, functions: &[], params: &params, locals: &locals };
     let of = |e: &Expr| eval::constant(e, &known, &mut Texts::default());

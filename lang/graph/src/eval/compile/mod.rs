@@ -22,7 +22,7 @@ use crate::{
     Agent, Conjunct, Expr, Goal, Graph, Op, Port, RobotGroup, Span, Stmt, Texts, Topic, Type, TypeTable,
     UserFunction,
 };
-use std::collections::BTreeMap;
+use std::{borrow::Cow, collections::BTreeMap};
 
 /// Result of a step of the compiler; boxed, for the compiler recurses as deep as expressions nest.
 pub(super) type Compiled<T> = Result<T, Box<CompileError>>;
@@ -158,7 +158,7 @@ pub struct Compiler<'g> {
     pub(super) topics: &'g [Topic],
     pub(super) goals: &'g [Goal],
     pub(super) robots: &'g [RobotGroup],
-    pub(super) params: Layout,
+    pub(super) params: Cow<'g, Layout>,
     pub(super) agent: Option<AgentView<'g>>,
     pub(super) program: Program,
     /// Indices of single constants by their bits.
@@ -181,7 +181,7 @@ impl<'g> Compiler<'g> {
             topics: &[],
             goals: &[],
             robots: &[],
-            params: Layout::default(),
+            params: Cow::default(),
             agent: None,
             program: Program::default(),
             pool: BTreeMap::new(),
@@ -199,14 +199,14 @@ impl<'g> Compiler<'g> {
             topics: &graph.topics,
             goals: &graph.goals,
             robots: &graph.robots,
-            params: Layout::params(graph),
+            params: Cow::Owned(Layout::params(graph)),
             ..Compiler::new(&graph.types, texts, &graph.functions)
         }
     }
 
-    /// Expressions may name parameters of these types from now on.
-    pub fn params<'t>(&mut self, types: impl IntoIterator<Item = &'t Type>) {
-        self.params = Layout::new(self.widths.table, types);
+    /// Expressions may name these parameters from now on.
+    pub fn params(&mut self, layout: &'g Layout) {
+        self.params = Cow::Borrowed(layout);
     }
 
     /// What is compiled from now on belongs to this agent of the graph (its states, arguments, ports and

@@ -62,7 +62,7 @@ impl Compiler<'_> {
         let (space, layout, i, what) = match e.op {
             Op::State(i) => (Space::States, agent.map(|a| &a.states), i, "state of the agent"),
             Op::Argument(i) => (Space::Arguments, agent.map(|a| &a.arguments), i, "argument of the agent"),
-            Op::Param(i) => (Space::Params, Some(&self.params), i, "parameter"),
+            Op::Param(i) => (Space::Params, Some(&*self.params), i, "parameter"),
             _ => return error(e.span, "no slot"),
         };
         let slot = layout.and_then(|l| Some((l.range(i as usize)?, l.ty(i as usize)?.clone())));
