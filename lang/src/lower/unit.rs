@@ -64,18 +64,16 @@ impl<'a> Checker<'a> {
                     return self.unknown_trigger("sensor", s, &names);
                 }
             },
-            TriggerKind::Topic(topic, name) => {
-                match self.topics.position(&topic.name) {
-                    Some(i) => {
-                        let ty = self.topics[i].ty.clone();
-                        Trigger::Message { topic: i as u32, local: body.bind(name, &ty) }
-                    }
-                    None => {
-                        let names: Vec<Name> = self.topics.iter().map(|t| t.channel.name.clone()).collect();
-                        return self.unknown_trigger("topic", topic, &names);
-                    }
+            TriggerKind::Topic(topic, name) => match self.topics.position(&topic.name) {
+                Some(i) => {
+                    let ty = self.topics[i].ty.clone();
+                    Trigger::Message { topic: i as u32, local: body.bind(name, &ty) }
                 }
-            }
+                None => {
+                    let names: Vec<Name> = self.topics.iter().map(|t| t.channel.name.clone()).collect();
+                    return self.unknown_trigger("topic", topic, &names);
+                }
+            },
             TriggerKind::Told(performative, content, name, from) => {
                 self.performative(performative)?;
                 if !self.types.records.contains_key(&content.name) {

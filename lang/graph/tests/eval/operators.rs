@@ -2,7 +2,7 @@
 
 use crate::support::*;
 use proptest::prelude::*;
-use soifra_graph::eval::{FaultKind, Known};
+use soifra_graph::eval::{FaultKind, Known, Parameters};
 use soifra_graph::*;
 use std::f64::consts::PI;
 
