@@ -71,7 +71,13 @@ impl<'t> Source<'t> {
             let rule = leaf.as_rule();
             if !matches!(
                 rule,
-                Rule::COMMENT | Rule::ident | Rule::string | Rule::int | Rule::number | Rule::unit
+                Rule::COMMENT
+                    | Rule::ident
+                    | Rule::string
+                    | Rule::int
+                    | Rule::number
+                    | Rule::unit
+                    | Rule::inverse
             ) {
                 continue;
             }

@@ -95,7 +95,7 @@ fn expected(e: &Error<Rule>) -> Vec<String> {
             Rule::ident | Rule::path => "a name".into(),
             Rule::string => "a text in quotes".into(),
             Rule::int | Rule::number | Rule::quantity => "a number".into(),
-            Rule::unit => "a unit".into(),
+            Rule::unit | Rule::inverse => "a unit".into(),
             Rule::type_ref | Rule::type_name | Rule::inline_enum | Rule::service_type => "a type".into(),
             Rule::stmt | Rule::body | Rule::block => "a statement".into(),
             Rule::entry => "an entry like `role name = model(…)`".into(),
