@@ -104,7 +104,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         output::note(&format!("fault: {fault}"));
     }
     match a.format {
-        Format::Human => output::print(&human(&report, trace.as_ref()))?,
+        Format::Human => output::print(&human(&report, &sets, trace.as_ref()))?,
         Format::Json => output::print_json(&Document {
             schema: output::SCHEMA,
             graph_digest,
@@ -128,10 +128,11 @@ const ROBOTS: usize = 40;
 /// More contacts than this are only counted.
 const CONTACTS: usize = 10;
 
-fn human(r: &RunReport, trace: Option<&Trace>) -> String {
+fn human(r: &RunReport, sets: &[(String, String)], trace: Option<&Trace>) -> String {
     let why = if r.reason.is_empty() { String::new() } else { format!(" ({})", r.reason) };
+    let set: String = sets.iter().map(|(name, value)| format!(", {name}={value}")).collect();
     let mut s = format!(
-        "{}, seed {}: {}{why} after {} s, {}\n\n",
+        "{}, seed {}{set}: {}{why} after {} s, {}\n\n",
         r.mission,
         r.seed,
         r.outcome.name(),

@@ -12,7 +12,7 @@ use crate::{
 use clap::{Args, ValueHint};
 use rayon::prelude::*;
 use serde::Serialize;
-use soifra_graph::{Binary, Diagnostic, Value, span::Source};
+use soifra_graph::{Binary, Diagnostic, Span, Value, span::Source};
 use soifra_lang::TestCase;
 use soifra_runtime::{Mission, RunReport};
 use std::{
@@ -165,7 +165,8 @@ fn file(path: &str, a: &Arguments, pool: Option<&rayon::ThreadPool>) -> Result<V
     let main = checked.graph.as_ref().map(|g| g.name.to_string());
     for case in checked.tests.iter().filter(|t| is_in(t, &checked.findings.sources, path)) {
         let mission = execute::load(compile::compile_mission(path, None, Some(&case.mission))?.graph)?;
-        entries.push(test(path, case, &mission, pool)?);
+        let place = Place { path, at: case.at, sources: &checked.findings.sources };
+        entries.push(test(&place, case, &mission, pool)?);
     }
     if let Some(graph) = checked.graph {
         let at = golden_path(path);
@@ -173,7 +174,8 @@ fn file(path: &str, a: &Arguments, pool: Option<&rayon::ThreadPool>) -> Result<V
             let name = format!("golden of {}", main.unwrap_or_default());
             let now = gather_golden(&execute::load(graph)?)?;
             let failure = if a.accept { accept(&at, &now)? } else { compare(&at, &now)? };
-            entries.push(entry(path, name, failure.into_iter().collect(), "S9019"));
+            let place = Place { path, at: Span::default(), sources: &[] };
+            entries.push(entry(&place, name, failure.into_iter().collect(), "S9019"));
         }
     }
     Ok(entries)
@@ -184,7 +186,14 @@ fn is_in(case: &TestCase, sources: &[Source], path: &str) -> bool {
     sources.get(case.at.file as usize).is_none_or(|s| s.path == path)
 }
 
-fn entry(path: &str, name: String, failures: Vec<String>, code: &'static str) -> Entry {
+/// Where a test stands.
+struct Place<'a> {
+    path: &'a str,
+    at: Span,
+    sources: &'a [Source],
+}
+
+fn entry(place: &Place<'_>, name: String, failures: Vec<String>, code: &'static str) -> Entry {
     let passed = failures.is_empty();
     if !passed {
         let title = format!("{name} failed: {}", failures.join("; "));
@@ -193,12 +202,13 @@ fn entry(path: &str, name: String, failures: Vec<String>, code: &'static str) ->
         } else {
             "`soifra run` with that seed records what happened"
         };
-        let d = Diagnostic::error(code, title).at(soifra_graph::Span::default(), "").hint(hint);
-        let source = Source { path: path.into(), text: String::new() };
-        Findings { diagnostics: vec![d], sources: vec![source] }.print();
+        let d = Diagnostic::error(code, title).at(place.at, "").hint(hint);
+        let unread = [Source { path: place.path.into(), text: String::new() }];
+        let sources = if place.sources.is_empty() { &unread[..] } else { place.sources };
+        Findings { diagnostics: vec![d], sources: sources.to_vec() }.print();
     }
     Entry {
-        path: path.into(),
+        path: place.path.into(),
         name,
         passed,
         failures,
@@ -208,7 +218,7 @@ fn entry(path: &str, name: String, failures: Vec<String>, code: &'static str) ->
 
 /// Runs every seed of a test.
 fn test(
-    path: &str,
+    place: &Place<'_>,
     case: &TestCase,
     mission: &Mission,
     pool: Option<&rayon::ThreadPool>,
@@ -223,7 +233,7 @@ fn test(
         Some(pool) => pool.install(work)?,
         None => work()?,
     };
-    Ok(entry(path, format!("test {}", case.name), results.into_iter().flatten().collect(), "S9022"))
+    Ok(entry(place, format!("test {}", case.name), results.into_iter().flatten().collect(), "S9022"))
 }
 
 fn one(
@@ -303,7 +313,9 @@ fn gather_golden(mission: &Mission) -> Result<Golden, Refusal> {
 fn accept(at: &Path, now: &Golden) -> Result<Option<String>, Refusal> {
     let text = serde_json::to_string_pretty(now).unwrap_or_default() + "\n";
     files::write(&at.to_string_lossy(), text.as_bytes())?;
-    output::note(&format!("accepted: {} ({})", at.display(), &graph_file::sha256(text.as_bytes())[..12]));
+    let end = format!("{}, {} events", now.outcome, now.events.len());
+    let digest = &graph_file::sha256(text.as_bytes())[..12];
+    output::note(&format!("accepted: {} ({end}; {digest})", at.display()));
     Ok(None)
 }
 

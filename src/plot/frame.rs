@@ -46,7 +46,8 @@ fn subtitle(scene: &Scene) -> String {
         None if scene.complete => format!("no outcome recorded, last record at {t} s"),
         None => format!("the trace is cut off at {t} s"),
     };
-    format!("{}, seed {}: {end}", header.mission, header.seed())
+    let set: String = header.params_set().iter().map(|p| format!(", {p}")).collect();
+    format!("{}, seed {}{set}: {end}", header.mission, header.seed())
 }
 
 pub(super) fn titles(drawing: &mut Drawing, scene: &Scene) {

@@ -3,7 +3,7 @@
 use super::{SCHEMA, TraceError, shape};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
-use soifra_graph::Value;
+use soifra_graph::{Param, Type, Value};
 use soifra_runtime::Scene;
 use std::collections::BTreeMap;
 
@@ -50,6 +50,20 @@ impl Header {
         })
     }
 
+    /// Parameters that were given another value than their default, as `rules=safe`; numbers in SI units.
+    pub fn params_set(&self) -> Vec<String> {
+        #[derive(Deserialize)]
+        struct Graph {
+            params: Vec<Param>,
+        }
+        let Ok(graph) = serde_json::from_str::<Graph>(&self.graph_json) else { return Vec::new() };
+        let set = graph.params.iter().filter_map(|p| {
+            let value = self.params.get(&*p.name).filter(|v| **v != p.default)?;
+            Some(format!("{}={}", p.name, written(value, &p.ty)))
+        });
+        set.collect()
+    }
+
     /// The message that carries it. An error means that `graph_json` is no JSON.
     pub(crate) fn to_message(&self) -> serde_json::Result<Vec<u8>> {
         serde_json::to_vec(&Written {
@@ -80,6 +94,17 @@ impl Header {
             scene: read.scene,
             graph_json: read.graph.get().to_string(),
         })
+    }
+}
+
+fn written(value: &Value, ty: &Type) -> String {
+    match (value, ty) {
+        (Value::Bool(b), _) => b.to_string(),
+        (Value::Int(i), _) => i.to_string(),
+        (Value::Number(x), Type::Quantity(d)) => format!("{x} {}", d.si_unit()).trim_end().to_string(),
+        (Value::Variant(name), _) => name.to_string(),
+        (Value::Text(text), _) => format!("{text:?}"),
+        _ => "…".to_string(),
     }
 }
 

@@ -136,7 +136,9 @@ fn an_interrupt_keeps_the_trace() {
         std::thread::sleep(Duration::from_millis(25));
     }
     let pid = child.id().to_string();
-    assert!(std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    assert!(
+        std::process::Command::new("sh").args(["-c", "kill -INT \"$0\"", &pid]).status().unwrap().success()
+    );
     let o = child.wait_with_output().unwrap();
     assert_eq!(code(&o), 130, "{}", stderr(&o));
     let o = soifra(&["replay", &trace, "--format", "json"]);

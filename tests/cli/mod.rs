@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod check;
+mod documents;
 mod fmt;
 mod graph;
 mod run;

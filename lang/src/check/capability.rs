@@ -8,6 +8,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for p in &g.platforms {
         complete(p, &mut out);
+        driven(p, &mut out);
     }
     for r in &g.robots {
         let Some(p) = g.platforms.get(r.platform as usize) else { continue };
@@ -42,6 +43,32 @@ fn complete(p: &Platform, out: &mut Vec<Diagnostic>) {
                     .at(p.at, format!("no `{role} = …` here"))
                     .hint(format!("add one; the models are listed under `{role}` in docs/language.md")),
             );
+        }
+    }
+}
+
+/// What only one kind of drive has: an actuator or sensor, the drive that it needs, and why.
+const NEEDS_DRIVE: &[(&str, &str, &str)] = &[
+    ("strides", "holonomic", "a stride goes in any direction"),
+    ("encoders", "differential", "pulses are counted at two wheels"),
+];
+
+/// Actuators and sensors that the drive cannot serve.
+fn driven(p: &Platform, out: &mut Vec<Diagnostic>) {
+    let Some(drive) = p.of_role("drive").next() else { return };
+    for c in &p.components {
+        for (model, needed, why) in NEEDS_DRIVE {
+            if *c.model == **model && *drive.model != **needed {
+                out.push(
+                    Diagnostic::error(
+                        code::INCOMPLETE_PLATFORM,
+                        format!("`{model}` of `{}` needs a {needed} drive", p.name),
+                    )
+                    .at(c.at, *why)
+                    .at(drive.at, format!("this drive is {}", drive.model))
+                    .hint(format!("take another `{}`, or another drive", c.role)),
+                );
+            }
         }
     }
 }

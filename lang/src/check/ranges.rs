@@ -10,6 +10,7 @@ use soifra_graph::{
 #[derive(Clone, Copy)]
 enum Must {
     BePositive,
+    BeAPeriod,
     NotBeNegative,
     BeAChance,
     Ascend,
@@ -25,7 +26,7 @@ const RULES: &[(&str, Must)] = &[
     ("color", Must::BeAColour),
     ("cone", Must::BePositive),
     ("delay", Must::NotBeNegative),
-    ("duration", Must::BePositive),
+    ("duration", Must::BeAPeriod),
     ("false_alarm", Must::BeAChance),
     ("field", Must::Ascend),
     ("height", Must::BePositive),
@@ -38,7 +39,7 @@ const RULES: &[(&str, Must)] = &[
     ("max_speed", Must::BePositive),
     ("max_turn", Must::BePositive),
     ("path", Must::HaveTwoPoints),
-    ("period", Must::BePositive),
+    ("period", Must::BeAPeriod),
     ("phase", Must::BeAChance),
     ("pulse", Must::BePositive),
     ("radius", Must::BePositive),
@@ -47,12 +48,14 @@ const RULES: &[(&str, Must)] = &[
     ("size", Must::BePositive),
     ("speed", Must::NotBeNegative),
     ("thickness", Must::BePositive),
-    ("turn_period", Must::BePositive),
+    ("turn_period", Must::BeAPeriod),
     ("wheel_acceleration", Must::BePositive),
     ("wheel_base", Must::BePositive),
     ("wheel_radius", Must::BePositive),
 ];
 
+/// The shortest period, in seconds.
+const SHORTEST: f64 = 1e-6;
 /// Most of one array that are looked at one by one.
 const MOST: usize = 256;
 /// Most robots, or things of one declaration.
@@ -72,7 +75,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         }
     }
     if let Some(step) = &g.step {
-        c.duration(step, "the step of the clock", true);
+        c.step(step);
     }
     c.limits(g);
     c.behaviours(g);
@@ -210,6 +213,15 @@ impl Ranges<'_> {
         }
     }
 
+    fn step(&mut self, e: &Expr) {
+        let seconds = self.known.value(e, 0);
+        if let Some((why, seen)) = seconds.and_then(|v| Must::BeAPeriod.complaint(&v, "s")) {
+            let title = format!("the step of the clock {why}");
+            let hint = Must::BeAPeriod.hint();
+            self.out.push(Diagnostic::error(code::RANGE, title).at(e.span, seen).hint(hint));
+        }
+    }
+
     fn limits(&mut self, g: &Graph) {
         if let Some(w) = &g.within {
             self.duration(w, "the time limit", true);
@@ -261,6 +273,7 @@ impl Must {
                 items.is_empty().then(|| ("cannot be empty", "no items".to_string()))
             }
             (Must::BePositive, _) => number(|x| x <= 0.0, "must be above 0"),
+            (Must::BeAPeriod, _) => number(|x| x < SHORTEST, "must be at least 1 us"),
             (Must::NotBeNegative, _) => number(|x| x < 0.0, "cannot be below 0"),
             (Must::BeAChance, _) => number(|x| !(0.0..=1.0).contains(&x), "must be from 0 to 1"),
             (Must::Ascend | Must::AscendFromZero, Value::Range(a, b)) if a >= b => {
@@ -286,6 +299,7 @@ impl Must {
     fn hint(self) -> &'static str {
         match self {
             Must::BePositive => "write a value above 0",
+            Must::BeAPeriod => "write a longer one: what happens more often never lets the time go on",
             Must::NotBeNegative => "write 0 or more",
             Must::BeAChance => "write a value from 0 to 1, or from 0 % to 100 %",
             Must::Ascend => "write the smaller end first",

@@ -2,7 +2,7 @@
 
 use crate::parse::Rule;
 use pest::iterators::Pair;
-use std::ops::Range;
+use std::{collections::BTreeSet, ops::Range};
 
 /// A token, and what stood between it and the one before.
 pub struct Token<'t> {
@@ -66,7 +66,15 @@ impl<'t> Source<'t> {
     /// Cuts `text`, whose tree is `root`. Words and marks mean the same everywhere; where a number, a unit
     /// or a text ends only the grammar knows.
     pub fn read(root: &Pair<'t, Rule>, text: &'t str) -> Source<'t> {
-        let mut r = Reader { text, at: 0, breaks: 1, first: 0, tokens: Vec::new(), comments: Vec::new() };
+        let mut r = Reader {
+            text,
+            at: 0,
+            breaks: 1,
+            first: 0,
+            tokens: Vec::new(),
+            comments: Vec::new(),
+            closings: closings(root),
+        };
         for leaf in root.clone().into_inner().flatten() {
             let rule = leaf.as_rule();
             if !matches!(
@@ -96,6 +104,12 @@ impl<'t> Source<'t> {
     }
 }
 
+/// Where the `>` stand that close a type: one of them and a `=` are no `>=`.
+fn closings(root: &Pair<'_, Rule>) -> BTreeSet<usize> {
+    let types = root.clone().into_inner().flatten().filter(|p| p.as_rule() == Rule::type_name);
+    types.filter_map(|p| Some(p.as_span().start() + p.as_str().rfind('>')?)).collect()
+}
+
 struct Reader<'t> {
     text: &'t str,
     at: usize,
@@ -104,6 +118,7 @@ struct Reader<'t> {
     first: usize,
     tokens: Vec<Token<'t>>,
     comments: Vec<Comment<'t>>,
+    closings: BTreeSet<usize>,
 }
 
 impl Reader<'_> {
@@ -124,7 +139,8 @@ impl Reader<'_> {
                 }
                 _ => {
                     let two = bytes[from..end].get(..2);
-                    let double = matches!(two, Some(b"=>" | b"->" | b"<=" | b">=" | b"==" | b"!=" | b".."));
+                    let double = matches!(two, Some(b"=>" | b"->" | b"<=" | b">=" | b"==" | b"!=" | b".."))
+                        && !self.closings.contains(&from);
                     let one = self.text[from..].chars().next().map_or(1, char::len_utf8);
                     self.token(from + if double { 2 } else { one });
                 }

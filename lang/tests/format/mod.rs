@@ -52,3 +52,10 @@ fn sources_keep_tokens_comments_and_meaning() {
         assert_faithful(&name, &text, &format(&name, &text));
     }
 }
+
+#[test]
+fn a_type_may_end_right_before_an_equals_sign() {
+    let text = "edition 1\n\nfn two(x:List<Length?,3>)->List<Length?,3>=x\nparam y:Quantity<m2/s>=1 m2/s\n";
+    let wanted = "edition 1\n\nfn two(x: List<Length?, 3>) -> List<Length?, 3> = x\nparam y: Quantity<m2/s> = 1 m2/s\n";
+    assert_eq!(format("text", text), wanted);
+}

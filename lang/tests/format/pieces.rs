@@ -57,6 +57,10 @@ fn length(at: &str, before: &str) -> usize {
     if before == "import" {
         return run(at, &|c| word(c) || c == '.');
     }
+    // The inverse of a unit, in a type.
+    if before == "<" && at.starts_with("1/") {
+        return at.find('>').unwrap_or(at.len());
+    }
     if first.is_ascii_digit() {
         let whole = run(at, &|c| c.is_ascii_digit() || c == '_');
         let fraction = at[whole..].strip_prefix('.').map_or(0, |f| run(f, &|c| c.is_ascii_digit()));

@@ -144,14 +144,26 @@ impl KeepOut {
     }
 
     /// Where a wanderer begins that would begin at `at`: on the rim of the disc it would be in, the nearest
-    /// place; from the centre of one in direction `heading`. Among discs that overlap it may stay inside.
-    fn pushed_out(&self, mut at: Vec2, heading: f64) -> Vec2 {
+    /// place that is well within `bounds`; from the centre of one in direction `heading`. Among discs that
+    /// overlap it may stay inside.
+    fn pushed_out(&self, mut at: Vec2, heading: f64, bounds: Option<&Aabb>) -> Vec2 {
         for _ in 0..self.discs.len().min(8) {
             let inside = self.discs.iter().find(|(c, r)| norm(sub(at, *c)) < *r);
             let Some((center, radius)) = inside else { break };
             let out = sub(at, *center);
             let out = if norm(out) > TOUCHING { out } else { [libm::cos(heading), libm::sin(heading)] };
-            at = along(*center, out, (radius + TOUCHING) / norm(out));
+            let turned = |degrees: f64| {
+                let (s, c) = libm::sincos(degrees.to_radians());
+                let way = [c * out[0] - s * out[1], s * out[0] + c * out[1]];
+                along(*center, way, (radius + TOUCHING) / norm(way))
+            };
+            // Where a disc touches the bounds it could go neither way.
+            let free = |p: &Vec2| {
+                bounds.is_none_or(|b| (0..2).all(|i| b.low[i] + 1e-6 < p[i] && p[i] < b.high[i] - 1e-6))
+            };
+            let nearest = along(*center, out, (radius + TOUCHING) / norm(out));
+            let others = (1..=6).flat_map(|k| [f64::from(30 * k), f64::from(-30 * k)]).map(turned);
+            at = std::iter::once(nearest).chain(others).find(free).unwrap_or(nearest);
         }
         at
     }
@@ -198,7 +210,7 @@ impl Wanderer {
         });
         let speed = args.at_least_zero("speed")?;
         let turn_period = args.period("turn_period")?.0.max(SHORTEST);
-        let place = Place { at: keep_out.pushed_out([x, y], heading), heading, path: 0.0 };
+        let place = Place { at: keep_out.pushed_out([x, y], heading, bounds.as_ref()), heading, path: 0.0 };
         Ok((Wanderer { heading, speed, turn_period, bounds, keep_out, noise }, place))
     }
 

@@ -66,32 +66,52 @@ fn a_mover_may_stand() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_wanderer_stays_in_and_keeps_out(
         heading in -3.0f64..3.0, speed in 0.1f64..5.0, period in 0.05f64..5.0, x in -1.5f64..1.5, y in -1.5f64..1.5,
     ) {
-        let world = vec![
-            part("bounds", "", "rectangle", &[("low", at(-2.0, -2.0)), ("high", at(2.0, 2.0))]),
-            part("mover", "fly", "wanderer", &[
-                ("radius", num(0.2)), ("at", at(x, y)), ("heading", num(heading)), ("speed", num(speed)),
-                ("turn_period", num(period)), ("keep_out", some(0.3)),
-            ]),
-        ];
-        let mut rig = rig(world, &[[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 1.3, 0.0]]);
-        let mut walked = 0.0;
-        let mut last = mover(&rig);
-        for i in 0..2000 {
-            rig.poll(0.01 * f64::from(i));
-            let [x, y] = mover(&rig);
-            prop_assert!(x.abs() <= 1.8 + 1e-6 && y.abs() <= 1.8 + 1e-6, "{} {}", x, y);
-            for c in [[1.0, 1.0], [-1.0, 1.0], [0.0, 1.3], [-1.0, -1.0], [1.0, -1.0], [0.0, -1.3]] {
-                prop_assert!(libm::hypot(x - c[0], y - c[1]) >= 0.5 - 1e-6, "{} {}", x, y);
-            }
-            walked += libm::hypot(x - last[0], y - last[1]);
-            last = [x, y];
-        }
-        prop_assert!(walked > 0.5 * speed * 20.0, "{}", walked);
+        wander(heading, speed, period, x, y)?;
     }
+}
+
+/// The nearest place out of the disc would be where it touches the bounds.
+#[test]
+fn a_wanderer_does_not_begin_in_a_wedge() {
+    wander(1.785, 0.1, 0.05, 0.0, -1.415).unwrap();
+}
+
+fn wander(heading: f64, speed: f64, period: f64, x: f64, y: f64) -> Result<(), TestCaseError> {
+    let world = vec![
+        part("bounds", "", "rectangle", &[("low", at(-2.0, -2.0)), ("high", at(2.0, 2.0))]),
+        part(
+            "mover",
+            "fly",
+            "wanderer",
+            &[
+                ("radius", num(0.2)),
+                ("at", at(x, y)),
+                ("heading", num(heading)),
+                ("speed", num(speed)),
+                ("turn_period", num(period)),
+                ("keep_out", some(0.3)),
+            ],
+        ),
+    ];
+    let mut rig = rig(world, &[[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 1.3, 0.0]]);
+    let mut walked = 0.0;
+    let mut last = mover(&rig);
+    for i in 0..2000 {
+        rig.poll(0.01 * f64::from(i));
+        let [x, y] = mover(&rig);
+        prop_assert!(x.abs() <= 1.8 + 1e-6 && y.abs() <= 1.8 + 1e-6, "{} {}", x, y);
+        for c in [[1.0, 1.0], [-1.0, 1.0], [0.0, 1.3], [-1.0, -1.0], [1.0, -1.0], [0.0, -1.3]] {
+            prop_assert!(libm::hypot(x - c[0], y - c[1]) >= 0.5 - 1e-6, "{} {}", x, y);
+        }
+        walked += libm::hypot(x - last[0], y - last[1]);
+        last = [x, y];
+    }
+    prop_assert!(walked > 0.5 * speed * 20.0, "{}", walked);
+    Ok(())
 }

@@ -178,13 +178,18 @@ impl Judge {
                 court.robot = code.each_robot.then_some(r as u32);
                 let before = track.held;
                 let mut ask = |c: &Condition| court.ask(c, &mut self.frame);
-                match occasion {
-                    Occasion::End => track.end(&code.kind, watch.limit, now, &mut ask)?,
-                    _ => track.step(&code.kind, watch.limit, now, &mut ask)?,
+                let result = match occasion {
+                    Occasion::End => track.end(&code.kind, watch.limit, now, &mut ask),
+                    _ => track.step(&code.kind, watch.limit, now, &mut ask),
+                };
+                if result.is_err() {
+                    // What cannot be told has not been seen to hold.
+                    track.violate(now);
                 }
                 if track.held != before {
                     watch.decided.push((r as u32, now));
                 }
+                result?;
             }
         }
         court.robot = None;

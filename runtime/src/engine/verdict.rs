@@ -50,7 +50,7 @@ impl Track {
                 c.margin.is_some()
             }
             ExpectKindCode::Finally(_) => return true,
-            ExpectKindCode::Until(..) => false,
+            ExpectKindCode::Until(first, second) => first.margin.is_some() || second.margin.is_some(),
             // The margin is the slowest answer, also after one came too late.
             ExpectKindCode::LeadsTo(_, _, limit) => limit.is_some(),
         };
@@ -69,7 +69,8 @@ impl Track {
         }
     }
 
-    fn violate(&mut self, at: Time) {
+    /// It has not held, and did so at this time first, unless it is decided.
+    pub fn violate(&mut self, at: Time) {
         if self.held.is_none() {
             (self.held, self.violated) = (Some(false), Some(at));
         }
@@ -112,16 +113,13 @@ impl Track {
                 }
             }
             ExpectKindCode::Until(first, second) => {
-                if self.held.is_some() {
-                    return Ok(());
-                }
                 let (a, b) = (ask(first)?, ask(second)?);
                 if first.margin.is_some() || second.margin.is_some() {
                     let reached = b.margin.unwrap_or(if b.holds { BOOLEAN } else { -BOOLEAN });
                     self.greatest(Some(reached.min(self.guard)));
                     self.guard = self.guard.min(a.margin.unwrap_or(if a.holds { BOOLEAN } else { -BOOLEAN }));
                 }
-                if b.holds {
+                if self.held.is_none() && b.holds {
                     self.held = Some(true);
                 } else if !a.holds {
                     self.violate(now);
@@ -153,7 +151,8 @@ impl Track {
         }
     }
 
-    /// The end of the run. An answer that is not due yet is not missed.
+    /// The end of the run, after its last instant has been judged. An answer that may still come is not
+    /// missed.
     pub fn end<E>(
         &mut self,
         kind: &ExpectKindCode,
@@ -165,9 +164,11 @@ impl Track {
             ExpectKindCode::Always(_) | ExpectKindCode::Never(_) => {}
             ExpectKindCode::Eventually(..) | ExpectKindCode::Until(..) => self.violate(now),
             ExpectKindCode::LeadsTo(..) => {
-                self.overdue(limit, now);
-                if self.pending.is_some() && limit.is_none() {
-                    self.violate(now);
+                if let Some(since) = self.pending {
+                    let last = limit.map_or(now, |l| since + l);
+                    if last <= now {
+                        self.violate(last);
+                    }
                 }
                 if let Some(limit) = limit {
                     let waiting = self.pending.map(|since| now - since);

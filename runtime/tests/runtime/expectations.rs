@@ -70,7 +70,7 @@ fn kinds_and_margins() {
         "each robot: truth.position.x < 0.95 m until truth.position.x >= 1.45 m",
         false,
         Some(1.0),
-        Some(-0.45),
+        Some(-0.25),
     );
     check(
         "each robot: truth.position.x >= 0.5 m leads to truth.position.x >= 0.95 m within 1 s",
@@ -84,6 +84,13 @@ fn kinds_and_margins() {
         Some(1.5),
         Some(-0.3),
     );
+    // An answer that is due at the last instant and is not there is missed.
+    check(
+        "each robot: truth.position.x >= 0.95 m leads to truth.position.x >= 9 m within 1 s",
+        false,
+        Some(2.0),
+        Some(0.0),
+    );
     check("each robot: truth.position.x >= 1.9 m", true, None, Some(0.1));
     // Whole conditions: `and` the smaller, `or` the greater, `not` the negative, `each` the least.
     check("always (each robot: truth.position.x <= 3 m) and collisions <= 4", true, None, Some(1.0));
@@ -91,6 +98,12 @@ fn kinds_and_margins() {
     // At 2 s the goal is achieved, which is no distance: the least one is that of 1.9 s.
     check("always achieved(g) or now < 7 s", true, None, Some(5.1));
     check("each robot: eventually pilot.arrived", true, None, None);
+}
+
+#[test]
+fn what_cannot_be_told_has_not_held() {
+    let seen = judge_with("always 1 / (now - 1 s) < 1000 / 1 s", |_| {});
+    assert_eq!((seen.held, seen.violated, seen.outcome), (Some(false), Some(1.0), Outcome::Aborted));
 }
 
 #[test]

@@ -1,0 +1,82 @@
+//! `docs/commands.md` tells every field of the JSON documents, and no other.
+
+use crate::support::{file, folder, json, root, soifra};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// Fields of a table of the page.
+fn told(table: &str) -> BTreeSet<String> {
+    let page = std::fs::read_to_string(root().join("docs/commands.md")).expect("the page");
+    let (_, rest) = page.split_once(&format!("<!-- fields: {table} -->")).expect("the table");
+    let rows = rest.split("<!-- end -->").next().unwrap_or_default().lines();
+    rows.filter_map(|l| Some(l.strip_prefix("| `")?.split('`').next()?.to_string())).collect()
+}
+
+/// Paths of all fields; below `opaque` names are the mission's.
+fn fields(v: &Value, path: &str, opaque: &[&str], out: &mut BTreeSet<String>) {
+    match v {
+        Value::Object(members) => {
+            for (name, member) in members {
+                let inside = opaque.contains(&path);
+                let at = match path {
+                    "" => name.clone(),
+                    _ if inside => format!("{path}.*"),
+                    _ => format!("{path}.{name}"),
+                };
+                if !inside || member.is_object() {
+                    out.extend((!inside).then(|| at.clone()));
+                    fields(member, &at, opaque, out);
+                }
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|i| fields(i, &format!("{path}[]"), opaque, out)),
+        _ => {}
+    }
+}
+
+fn found(v: &Value, opaque: &[&str], leave: &[&str]) -> BTreeSet<String> {
+    let mut out = BTreeSet::new();
+    fields(v, "", opaque, &mut out);
+    out.retain(|f| !leave.iter().any(|l| f.starts_with(l)));
+    out
+}
+
+#[test]
+fn every_field_of_a_run_is_told() {
+    let dir = folder("documents");
+    let trace = dir.join("run.mcap").to_string_lossy().into_owned();
+    let mission = root().join("missions/khepera/sim1.soi").to_string_lossy().into_owned();
+    // Without avoidance there are contacts to tell of.
+    let mut seen = BTreeSet::new();
+    for seed in ["1", "2", "3", "4"] {
+        let o = soifra(&[
+            "run",
+            &mission,
+            "--seed",
+            seed,
+            "--set",
+            "avoidance=off",
+            "--trace",
+            &trace,
+            "--format",
+            "json",
+        ]);
+        seen.extend(found(&json(&o), &["metrics", "params"], &["robots[].final.", "diagnostics["]));
+    }
+    assert_eq!(seen, told("run"));
+}
+
+#[test]
+fn every_field_of_a_sweep_is_told() {
+    let mission = root().join("missions/khepera/sim1.soi").to_string_lossy().into_owned();
+    let o = soifra(&["sweep", &mission, "--seeds", "2", "--set", "rules=safe", "--format", "json"]);
+    let opaque = ["summary", "graph_digests", "runs[].metrics"];
+    assert_eq!(found(&json(&o), &opaque, &["groups[].summary.", "plan.sets[", "runs[].set["]), told("sweep"));
+}
+
+#[test]
+fn every_field_of_a_check_is_told() {
+    let wrong = file(&folder("documents-check"), "wrong.soi", "edition 1\nlet far = 3 m + 2 s\n");
+    let o = soifra(&["check", &wrong, "--format", "json"]);
+    assert_eq!(found(&json(&o), &[], &["diagnostics[].labels["]), told("check"));
+}
