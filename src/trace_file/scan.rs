@@ -176,6 +176,9 @@ fn interpret(
     if !matches!(op, op::CHANNEL | op::MESSAGE) {
         return Ok(None);
     }
+    if !texts_fit(op, body) {
+        return Err(damaged(at, "a channel whose texts are longer than its record"));
+    }
     match mcap::parse_record(op, body).map_err(|e| damaged(at, e))? {
         McapRecord::Channel(c) => {
             let content = match &*c.topic {
@@ -199,6 +202,32 @@ fn interpret(
     }
 }
 
+/// Whether the texts in the body of a channel or of a chunk end within it. The library makes room for as many
+/// bytes as a text announces before it reads them.
+pub(super) fn texts_fit(op: u8, body: &[u8]) -> bool {
+    // The end of the text, or of the map, that begins at `from`.
+    let end = |from: usize| {
+        let head = body.get(from..from.checked_add(4)?)?;
+        let end = (from + 4).checked_add(usize::try_from(length(head)).ok()?)?;
+        (end <= body.len()).then_some(end)
+    };
+    let channel = || {
+        // Two numbers, topic, encoding, and a map of texts.
+        let map = end(end(4)?)?;
+        let (mut at, last) = (map + 4, end(map)?);
+        while at < last {
+            at = end(at)?;
+        }
+        (at == last).then_some(())
+    };
+    match op {
+        op::CHANNEL => channel().is_some(),
+        // Two times, the length and the checksum come first.
+        op::CHUNK => end(28).is_some(),
+        _ => true,
+    }
+}
+
 /// Opcode and place of the body of the record at `from`; `None` when it reaches beyond the chunk.
 fn split(chunk: &[u8], from: usize) -> Option<(u8, Range<usize>)> {
     let start = from.checked_add(RECORD_HEAD)?;
@@ -215,6 +244,9 @@ fn length(bytes: &[u8]) -> u64 {
 /// The content of a chunk record, checked.
 fn decompress(body: &[u8], out: &mut Vec<u8>) -> Result<(), String> {
     out.clear();
+    if !texts_fit(op::CHUNK, body) {
+        return Err("a chunk without a proper head".into());
+    }
     let Ok(McapRecord::Chunk { header, data }) = mcap::parse_record(op::CHUNK, body) else {
         return Err("a chunk without a proper head".into());
     };
@@ -247,4 +279,33 @@ fn decompress(body: &[u8], out: &mut Vec<u8>) -> Result<(), String> {
 
 pub(crate) fn damaged(at: u64, what: impl ToString) -> TraceError {
     TraceError::Damaged { at, what: what.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_that_announce_more_than_there_is_are_not_read() {
+        let mut chunk = vec![0; 28];
+        chunk.extend(3u32.to_le_bytes());
+        chunk.extend(b"lz4");
+        assert!(texts_fit(op::CHUNK, &chunk));
+        chunk[31] = 0xff;
+        assert!(!texts_fit(op::CHUNK, &chunk) && !texts_fit(op::CHUNK, &chunk[..30]));
+
+        let text = |t: &str| [&(t.len() as u32).to_le_bytes()[..], t.as_bytes()].concat();
+        let map = [text("key"), text("value")].concat();
+        let sized = [&(map.len() as u32).to_le_bytes()[..], &map].concat();
+        let channel = [vec![0; 4], text("/tf"), text("json"), sized].concat();
+        assert!(texts_fit(op::CHANNEL, &channel));
+        for (i, byte) in channel.iter().enumerate() {
+            let mut other = channel.clone();
+            // The high byte of each length.
+            if *byte == 0 && i > 4 {
+                other[i] = 0xff;
+                assert!(!texts_fit(op::CHANNEL, &other), "{i}");
+            }
+        }
+    }
 }
