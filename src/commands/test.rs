@@ -174,7 +174,8 @@ fn file(path: &str, a: &Arguments, pool: Option<&rayon::ThreadPool>) -> Result<V
             let name = format!("golden of {}", main.unwrap_or_default());
             let now = gather_golden(&execute::load(graph)?)?;
             let failure = if a.accept { accept(&at, &now)? } else { compare(&at, &now)? };
-            let place = Place { path, at: Span::default(), sources: &[] };
+            let whole = [Source { path: path.into(), text: String::new() }];
+            let place = Place { path, at: Span::default(), sources: &whole };
             entries.push(entry(&place, name, failure.into_iter().collect(), "S9019"));
         }
     }
@@ -203,9 +204,7 @@ fn entry(place: &Place<'_>, name: String, failures: Vec<String>, code: &'static 
             "`soifra run` with that seed records what happened"
         };
         let d = Diagnostic::error(code, title).at(place.at, "").hint(hint);
-        let unread = [Source { path: place.path.into(), text: String::new() }];
-        let sources = if place.sources.is_empty() { &unread[..] } else { place.sources };
-        Findings { diagnostics: vec![d], sources: sources.to_vec() }.print();
+        Findings { diagnostics: vec![d], sources: place.sources.to_vec() }.print();
     }
     Entry {
         path: place.path.into(),

@@ -204,7 +204,7 @@ fn interpret(
 
 /// Whether the texts in the body of a channel or of a chunk end within it. The library makes room for as many
 /// bytes as a text announces before it reads them.
-pub(super) fn texts_fit(op: u8, body: &[u8]) -> bool {
+fn texts_fit(op: u8, body: &[u8]) -> bool {
     // The end of the text, or of the map, that begins at `from`.
     let end = |from: usize| {
         let head = body.get(from..from.checked_add(4)?)?;
@@ -244,10 +244,8 @@ fn length(bytes: &[u8]) -> u64 {
 /// The content of a chunk record, checked.
 fn decompress(body: &[u8], out: &mut Vec<u8>) -> Result<(), String> {
     out.clear();
-    if !texts_fit(op::CHUNK, body) {
-        return Err("a chunk without a proper head".into());
-    }
-    let Ok(McapRecord::Chunk { header, data }) = mcap::parse_record(op::CHUNK, body) else {
+    let chunk = texts_fit(op::CHUNK, body).then(|| mcap::parse_record(op::CHUNK, body));
+    let Some(Ok(McapRecord::Chunk { header, data })) = chunk else {
         return Err("a chunk without a proper head".into());
     };
     let size = header.uncompressed_size;
