@@ -16,8 +16,12 @@ fn main() {
     pages.sort();
     let list: String = pages
         .iter()
-        .filter_map(|p| Some((p.file_stem()?.to_str()?, p.to_str()?)))
-        .map(|(code, path)| format!("    ({code:?}, include_str!({path:?})),\n"))
+        .filter_map(|p| p.file_stem()?.to_str().map(str::to_string))
+        // Relative to the folder of the crate that is compiled: a shared target folder may serve several.
+        .map(|code| {
+            let path = format!("concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/diagnostics/{code}.md\")");
+            format!("    ({code:?}, include_str!({path})),\n")
+        })
         .collect();
     let out = format!("/// Code and page.\nconst PAGES: &[(&str, &str)] = &[\n{list}];\n");
     let to = Path::new(&env::var("OUT_DIR").unwrap_or_default()).join("pages.rs");

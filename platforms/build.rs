@@ -17,22 +17,24 @@ fn main() -> Result<()> {
     }
     files.sort();
     let mut text = String::from("const FILES: &[(&str, &str)] = &[\n");
-    for (name, path) in files {
-        text += &format!("    ({name:?}, include_str!({path:?})),\n");
+    // Relative to the folder of the crate that is compiled: a shared target folder may serve several.
+    for name in files {
+        let path = format!("concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/{name}\")");
+        text += &format!("    ({name:?}, include_str!({path})),\n");
     }
     text += "];\n";
     fs::write(out.join("library.rs"), text)
 }
 
-/// All `.soi` files of a folder and those in it; paths with `/`.
-fn gather(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Result<()> {
+/// Names of all `.soi` files of a folder and those in it, with `/`.
+fn gather(folder: &Path, name: &str, files: &mut Vec<String>) -> Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         let name = format!("{name}/{}", path.file_name().unwrap_or_default().to_string_lossy());
         if path.is_dir() {
             gather(&path, &name, files)?;
         } else if path.extension().is_some_and(|e| e == "soi") {
-            files.push((name, path));
+            files.push(name);
         }
     }
     Ok(())

@@ -100,6 +100,11 @@ impl Collisions {
         self.checked
     }
 
+    /// Where a body is at `t`, when contacts were last looked for at that instant.
+    pub fn place(&self, body: usize, t: i64) -> Option<Vec2> {
+        if self.checked == t { self.at.get(body).copied() } else { None }
+    }
+
     /// Moves the reports out, in order of time, robot, other.
     pub fn take(&mut self, out: &mut Vec<Report>) {
         self.reports.sort_by_key(order);

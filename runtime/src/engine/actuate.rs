@@ -13,7 +13,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use soifra_graph::{
     Diagnostic,
-    eval::{Block, Fault, Memory},
+    eval::{Block, Fault, Memory, copy_registers},
 };
 use std::collections::BTreeMap;
 
@@ -131,7 +131,7 @@ impl Actuators {
         self.proposals[channel.proposals + source as usize] = Proposed { at: Some(now), expires, cause };
         let at = channel.commands + source as usize * registers.len();
         if let Some(slot) = self.commands.get_mut(at..at + registers.len()) {
-            slot.copy_from_slice(registers);
+            copy_registers(registers, slot);
         }
         if !channel.touched {
             channel.touched = true;

@@ -9,9 +9,10 @@
 //! Places are world truth, which a radio obeys without knowing it. Where there is no world truth, every
 //! message is in range, and the first senders count.
 
-use super::grid::{Grid, Site};
+use super::grid::{Grid, Site, Visitor};
 use crate::{Time, seed::chance};
 use serde::{Deserialize, Serialize};
+use soifra_graph::eval::copy_registers;
 use std::sync::Arc;
 
 /// How the messages of a topic travel.
@@ -56,6 +57,8 @@ pub(crate) struct Board {
     seed: u64,
     /// Instances that publish.
     senders: Arc<[u32]>,
+    /// Number of each instance among the senders.
+    number: Vec<Option<u32>>,
     /// Messages kept a sender.
     ring: usize,
     kept: Kept,
@@ -68,9 +71,21 @@ pub(crate) struct Board {
     placed: bool,
 }
 
+/// A message that is heard.
+#[derive(Debug, Clone, Copy, Default)]
+struct Heard {
+    /// Distance of the sender, squared.
+    far: f64,
+    sender: u32,
+    slot: u32,
+}
+
 /// Room for one question, kept between questions.
 #[derive(Debug, Default)]
-pub(crate) struct Near(Vec<(f64, u32, u32)>);
+pub(crate) struct Near(Vec<Heard>);
+
+/// More messages than this are sorted; fewer are put in order by counting.
+const FEW: usize = 12;
 
 impl Board {
     /// A board for senders whose shortest period is `period`.
@@ -96,11 +111,16 @@ impl Board {
             stamps: vec![stamp; senders.len() * ring],
             registers: vec![0.0; senders.len() * ring * channel.width],
         };
+        let mut number = vec![None; senders.last().map_or(0, |s| *s as usize + 1)];
+        for (s, instance) in senders.iter().enumerate() {
+            number[*instance as usize] = Some(s as u32);
+        }
         Board {
             channel,
             topic,
             seed,
             senders: senders.into(),
+            number,
             ring,
             kept,
             grid: Grid::default(),
@@ -115,7 +135,8 @@ impl Board {
         self.placed
     }
 
-    /// Publishes. `lifetime` is that of the unit.
+    /// Publishes, and returns the number of the message among those of its sender. `lifetime` is that of
+    /// the unit.
     pub fn publish(
         &mut self,
         now: Time,
@@ -124,21 +145,19 @@ impl Board {
         lifetime: Time,
         record: u64,
         place: [f64; 3],
-    ) {
-        let Ok(s) = self.senders.binary_search(&instance) else { return };
-        let slot = s * self.ring + (self.kept.sent[s] % self.ring as u64) as usize;
+    ) -> u64 {
+        let Some(Some(s)) = self.number.get(instance as usize) else { return 0 };
+        let s = *s as usize;
+        let number = self.kept.sent[s];
+        let slot = s * self.ring + (number % self.ring as u64) as usize;
         let from = now + self.channel.delay;
         let until = from + self.channel.lifetime.unwrap_or(lifetime);
         self.kept.stamps[slot] = Stamp { from, until, record, place };
         let at = slot * self.channel.width;
         let width = self.channel.width.min(registers.len());
-        self.kept.registers[at..at + width].copy_from_slice(&registers[..width]);
-        self.kept.sent[s] += 1;
-    }
-
-    /// Number of the message that `instance` will publish next.
-    pub fn number(&self, instance: u32) -> u64 {
-        self.senders.binary_search(&instance).map_or(0, |s| self.kept.sent[s])
+        copy_registers(&registers[..width], &mut self.kept.registers[at..at + width]);
+        self.kept.sent[s] = number + 1;
+        number
     }
 
     /// Whether message `number` of a sender is lost on its way to a receiver.
@@ -196,79 +215,128 @@ impl Board {
     ) {
         let width = self.channel.width.max(1);
         let capacity = (out.len().saturating_sub(1) / width).min(self.channel.capacity);
-        near.0.clear();
-        let found = &mut near.0;
-        if self.placed {
+        let (mut found, by_distance) = if self.placed {
             let range = self.channel.range.unwrap_or(f64::INFINITY);
-            let distance = |at: [f64; 3]| {
-                let d = [at[0] - place[0], at[1] - place[1], at[2] - place[2]];
-                d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-            };
-            let found = std::cell::RefCell::new(found);
-            self.grid.around(
-                place,
-                range,
-                |site| {
-                    let (mut d, mut slot) = (distance(site.at), site.message);
-                    if d > range * range || site.sender == receiver {
-                        return;
-                    }
-                    if self.channel.loss > 0.0 {
-                        match self.received(slot as usize / self.ring, receiver, now) {
-                            Some(s) => slot = s as u32,
-                            None => return,
-                        }
-                        d = distance(self.kept.stamps[slot as usize].place);
-                        if d > range * range {
-                            return;
-                        }
-                    }
-                    found.borrow_mut().push((d, site.sender, slot));
-                },
-                |seen| {
-                    let found = found.borrow();
-                    found.len() > capacity && found.iter().filter(|f| f.0 <= seen * seen).count() > capacity
-                },
-            );
-            let found = found.into_inner();
-            if found.len() > capacity {
-                let order =
-                    |a: &(f64, u32, u32), b: &(f64, u32, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-                if capacity > 0 {
-                    found.select_nth_unstable_by(capacity - 1, order);
-                }
-                found.truncate(capacity);
-                found.sort_unstable_by(order);
-            } else {
-                found.sort_unstable_by_key(|f| f.1);
-            }
+            let mut listener =
+                Listener { board: self, now, receiver, place, square: range * range, capacity, near, found: 0 };
+            self.grid.around(place, range, &mut listener);
+            let found = listener.found;
+            (found, found > capacity)
         } else {
-            for (s, &sender) in self.senders.iter().enumerate() {
-                if found.len() == capacity {
-                    break;
-                }
-                if sender != receiver
-                    && let Some(slot) = self.received(s, receiver, now)
-                {
-                    found.push((0.0, s as u32, slot as u32));
-                }
+            (self.hear_first(now, receiver, capacity, near), false)
+        };
+        if by_distance {
+            let order = |a: &Heard, b: &Heard| a.far.total_cmp(&b.far).then(a.sender.cmp(&b.sender));
+            let all = &mut near.0[..found];
+            if capacity > 0 {
+                all.select_nth_unstable_by(capacity - 1, order);
             }
+            found = capacity;
+            all[..found].sort_unstable_by(order);
+        } else if found > FEW || records.is_some() {
+            near.0[..found].sort_unstable_by_key(|f| f.sender);
         }
-        out.fill(0.0);
+        let sorted = by_distance || found > FEW || records.is_some();
+        let found = &near.0[..found];
         let Some((count, items)) = out.split_first_mut() else { return };
-        *count = near.0.len() as f64;
-        for (item, &(_, _, slot)) in items.chunks_exact_mut(width).zip(&near.0) {
-            let at = slot as usize * self.channel.width;
-            item.copy_from_slice(&self.kept.registers[at..at + self.channel.width]);
+        *count = found.len() as f64;
+        let (items, rest) = items.split_at_mut(found.len() * width);
+        rest.fill(0.0);
+        for (i, f) in found.iter().enumerate() {
+            let i =
+                if sorted { i } else { found.iter().map(|g| usize::from(g.sender < f.sender)).sum::<usize>() };
+            let at = f.slot as usize * self.channel.width;
+            let message = &self.kept.registers[at..at + self.channel.width];
+            copy_registers(message, &mut items[i * width..i * width + self.channel.width]);
             if let Some(records) = records.as_deref_mut() {
-                records.push(self.kept.stamps[slot as usize].record);
+                records.push(self.kept.stamps[f.slot as usize].record);
             }
         }
+    }
+
+    /// The first messages that are heard, when places do not matter; returns how many.
+    fn hear_first(&self, now: Time, receiver: u32, capacity: usize, near: &mut Near) -> usize {
+        near.0.clear();
+        for (s, &sender) in self.senders.iter().enumerate() {
+            if near.0.len() == capacity {
+                break;
+            }
+            if sender != receiver
+                && let Some(slot) = self.received(s, receiver, now)
+            {
+                near.0.push(Heard { far: 0.0, sender, slot: slot as u32 });
+            }
+        }
+        near.0.len()
     }
 
     fn received(&self, s: usize, receiver: u32, now: Time) -> Option<usize> {
         let sender = self.senders[s];
         self.newest(s, now, |number| !self.lost(sender, receiver, number))
+    }
+}
+
+/// A receiver among the places of messages.
+struct Listener<'a> {
+    board: &'a Board,
+    now: Time,
+    receiver: u32,
+    place: [f64; 3],
+    /// The range, squared.
+    square: f64,
+    capacity: usize,
+    near: &'a mut Near,
+    /// How many of `near` are heard.
+    found: usize,
+}
+
+impl Listener<'_> {
+    /// Squared distance of a place.
+    #[inline]
+    fn far(&self, at: [f64; 3]) -> f64 {
+        let d = [at[0] - self.place[0], at[1] - self.place[1], at[2] - self.place[2]];
+        d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+    }
+
+    /// As [`Visitor::look`] where messages can be lost.
+    fn look_for_received(&mut self, sites: &[Site]) {
+        for site in sites {
+            if self.far(site.at) > self.square || site.sender == self.receiver {
+                continue;
+            }
+            let sender = site.message as usize / self.board.ring;
+            let Some(slot) = self.board.received(sender, self.receiver, self.now) else { continue };
+            let far = self.far(self.board.kept.stamps[slot].place);
+            if far <= self.square {
+                self.near.0[self.found] = Heard { far, sender: site.sender, slot: slot as u32 };
+                self.found += 1;
+            }
+        }
+    }
+}
+
+impl Visitor for Listener<'_> {
+    #[inline]
+    fn look(&mut self, sites: &[Site]) {
+        let most = self.found + sites.len();
+        if self.near.0.len() < most {
+            self.near.0.resize(most, Heard::default());
+        }
+        if self.board.channel.loss > 0.0 {
+            return self.look_for_received(sites);
+        }
+        // Each is put down, and counted when it is heard: nothing that would have to be guessed.
+        for site in sites {
+            let far = self.far(site.at);
+            self.near.0[self.found] = Heard { far, sender: site.sender, slot: site.message };
+            self.found += usize::from(far <= self.square && site.sender != self.receiver);
+        }
+    }
+
+    fn enough(&self, seen: f64) -> bool {
+        let found = &self.near.0[..self.found];
+        found.len() > self.capacity
+            && found.iter().filter(|f| f.far <= seen * seen).count() > self.capacity
     }
 }
 

@@ -240,8 +240,7 @@ impl Engine<'_> {
         let truth = if board.placed() || ranged { self.platform.truth() } else { None };
         let place = |robot: u32| truth.map_or([0.0; 3], |t| t.position(robot));
         let here = place(robot);
-        let number = board.number(sender);
-        board.publish(now, sender, registers, info.lifetime, record.unwrap_or(0), here);
+        let number = board.publish(now, sender, registers, info.lifetime, record.unwrap_or(0), here);
         if receivers.is_empty() {
             return;
         }

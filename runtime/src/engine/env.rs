@@ -14,7 +14,7 @@ use crate::{
 };
 use soifra_graph::{
     Distribution, Own, Type, Value,
-    eval::{Effect, Env, FaultKind},
+    eval::{Effect, Env, FaultKind, copy_registers},
     reason,
 };
 
@@ -123,29 +123,35 @@ impl Env for AgentEnv<'_, '_> {
 
     fn effect(&mut self, effect: Effect<'_>) -> Result<(), FaultKind> {
         let trace = self.instant.trace;
-        let item = match effect {
+        // Each kind is pushed for itself: an item that is first made and then moved is slow to move.
+        let log = &mut *self.log;
+        match effect {
             Effect::Command { port, registers } => {
-                Item::Command { port, registers: self.log.keep(registers) }
+                let registers = log.keep(registers);
+                log.items.push(Item::Command { port, registers });
             }
             Effect::Publish { topic, registers } => {
-                Item::Publish { topic, registers: self.log.keep(registers) }
+                let registers = log.keep(registers);
+                log.items.push(Item::Publish { topic, registers });
             }
-            Effect::Tell { performative, to, content, registers } => Item::Tell(Box::new(Told {
-                performative: performative.into(),
-                to: to.into(),
-                content: content.clone(),
-                registers: self.log.keep(registers),
-            })),
-            Effect::Raise(event) => Item::Raise(event),
+            Effect::Tell { performative, to, content, registers } => {
+                let (performative, to, content) = (performative.into(), to.into(), content.clone());
+                let registers = log.keep(registers);
+                log.items.push(Item::Tell(Box::new(Told { performative, to, content, registers })));
+            }
+            Effect::Raise(event) => log.items.push(Item::Raise(event)),
             Effect::SetParam { param, registers } => {
-                Item::SetParam { param, registers: self.log.keep(registers) }
+                let registers = log.keep(registers);
+                log.items.push(Item::SetParam { param, registers });
             }
-            Effect::Note { text, value } if trace => Item::Note(self.note(text, value).into()),
-            Effect::RuleFired { rule, at } if trace => Item::Rule { rule, at },
+            Effect::Note { text, value } if trace => {
+                let text = self.note(text, value).into();
+                self.log.items.push(Item::Note(text));
+            }
+            Effect::RuleFired { rule, at } if trace => log.items.push(Item::Rule { rule, at }),
             // Changes of states are seen by comparing before and after.
-            Effect::Note { .. } | Effect::RuleFired { .. } | Effect::StateSet { .. } => return Ok(()),
-        };
-        self.log.items.push(item);
+            Effect::Note { .. } | Effect::RuleFired { .. } | Effect::StateSet { .. } => {}
+        }
         Ok(())
     }
 }
@@ -154,7 +160,7 @@ fn fill(out: &mut [f64], value: &[f64]) -> Result<(), FaultKind> {
     if out.len() != value.len() {
         return Err(FaultKind::Malformed);
     }
-    out.copy_from_slice(value);
+    copy_registers(value, out);
     Ok(())
 }
 

@@ -10,6 +10,15 @@ pub(crate) struct Site {
     pub message: u32,
 }
 
+/// Who looks at sites.
+pub(crate) trait Visitor {
+    /// Looks at some sites.
+    fn look(&mut self, sites: &[Site]);
+
+    /// Whether no more sites are wanted when all up to a distance have been looked at.
+    fn enough(&self, seen: f64) -> bool;
+}
+
 /// Sites sorted into square cells of the xy-plane: about two in each, or as wide as the range when that is
 /// less, as far as memory in proportion to the sites allows.
 #[derive(Debug, Default)]
@@ -41,13 +50,13 @@ impl Grid {
         let (area, length) = (extent[0] * extent[1], extent[0].max(extent[1]));
         let even = (2.0 * area / n).sqrt().max(2.0 * length / n);
         // Robots in a ring leave most of its square empty: then finer cells pay.
-        let finest = (area / (8.0 * n)).sqrt().max(length / (4.0 * n));
+        let finest = (area / (32.0 * n)).sqrt().max(length / (8.0 * n));
         // A little wider than the range, so that the cells around a place hold all within it.
         let cell = even.min((1.000_001 * range).max(finest));
         self.cell =
             if cell.is_finite() && cell > 1e-9 { cell } else { 1e-9_f64.max(extent[0].max(extent[1])) };
         self.low = if sites.is_empty() { [0.0; 2] } else { low };
-        let most = 4 * sites.len() + 2;
+        let most = 8 * sites.len() + 2;
         self.size = extent.map(|e| ((e / self.cell) as usize + 1).min(most));
         self.starts.clear();
         self.starts.resize(self.size[0] * self.size[1] + 1, 0);
@@ -57,29 +66,26 @@ impl Grid {
                 [0, 1].map(|a| (((s.at[a] - self.low[a]) / self.cell) as usize).min(self.size[a] - 1));
             let c = y * self.size[0] + x;
             self.cells.push(c as u32);
-            self.starts[c + 1] += 1;
+            self.starts[c] += 1;
         }
-        for c in 1..self.starts.len() {
-            self.starts[c] += self.starts[c - 1];
+        let mut sum = 0;
+        for c in &mut self.starts {
+            sum += *c;
+            *c = sum;
         }
         self.sites.clear();
         self.sites.resize(sites.len(), Site { at: [0.0; 3], sender: 0, message: 0 });
-        let mut next = self.starts.clone();
-        for (s, &c) in sites.iter().zip(&self.cells) {
-            self.sites[next[c as usize] as usize] = *s;
-            next[c as usize] += 1;
+        // From the ends, which so become the starts.
+        for (s, &c) in sites.iter().zip(&self.cells).rev() {
+            let end = &mut self.starts[c as usize];
+            *end -= 1;
+            self.sites[*end as usize] = *s;
         }
     }
 
-    /// Visits sites around `at` in growing squares until all within `range` are seen, or `enough` says,
-    /// given a distance up to which all have been seen, that no more are wanted.
-    pub fn around(
-        &self,
-        at: [f64; 3],
-        range: f64,
-        mut visit: impl FnMut(&Site),
-        mut enough: impl FnMut(f64) -> bool,
-    ) {
+    /// Shows sites around `at` in growing squares until all within `range` are seen, or the visitor has
+    /// enough.
+    pub fn around(&self, at: [f64; 3], range: f64, visitor: &mut impl Visitor) {
         if self.sites.is_empty() {
             return;
         }
@@ -93,7 +99,7 @@ impl Grid {
         if range < self.cell {
             let [from, to] = [(center[0] - 1).max(0), (center[0] + 1).min(size[0] - 1)];
             for y in (center[1] - 1).max(0)..=(center[1] + 1).min(size[1] - 1) {
-                self.row(y, from, to, &mut visit);
+                self.row(y, from, to, visitor);
             }
             return;
         }
@@ -105,31 +111,32 @@ impl Grid {
             let (x0, x1) = (center[0] - ring, center[0] + ring);
             for y in (center[1] - ring).max(0)..=(center[1] + ring).min(size[1] - 1) {
                 if y == center[1] - ring || y == center[1] + ring {
-                    self.row(y, x0.max(0), x1.min(size[0] - 1), &mut visit);
+                    self.row(y, x0.max(0), x1.min(size[0] - 1), visitor);
                 } else {
                     if x0 >= 0 {
-                        self.row(y, x0, x0, &mut visit);
+                        self.row(y, x0, x0, visitor);
                     }
                     if x1 < size[0] && ring > 0 {
-                        self.row(y, x1, x1, &mut visit);
+                        self.row(y, x1, x1, visitor);
                     }
                 }
             }
             let seen = ring as f64 * self.cell;
-            if seen > range || enough(seen) {
+            if seen > range || visitor.enough(seen) {
                 return;
             }
             ring += 1;
         }
     }
 
-    fn row(&self, y: i64, from: i64, to: i64, visit: &mut impl FnMut(&Site)) {
+    #[inline]
+    fn row(&self, y: i64, from: i64, to: i64, visitor: &mut impl Visitor) {
         if from > to || to < 0 || from >= self.size[0] as i64 {
             return;
         }
         let c = y as usize * self.size[0];
         let (a, b) = (self.starts[c + from as usize], self.starts[c + to as usize + 1]);
-        self.sites[a as usize..b as usize].iter().for_each(visit);
+        visitor.look(&self.sites[a as usize..b as usize]);
     }
 }
 
@@ -137,6 +144,18 @@ impl Grid {
 mod tests {
     use super::*;
     use crate::seed::chance;
+
+    struct Seen(Vec<Site>);
+
+    impl Visitor for Seen {
+        fn look(&mut self, sites: &[Site]) {
+            self.0.extend_from_slice(sites);
+        }
+
+        fn enough(&self, _: f64) -> bool {
+            false
+        }
+    }
 
     #[test]
     fn finds_what_a_search_of_all_finds() {
@@ -157,17 +176,9 @@ mod tests {
                         let d = [0, 1].map(|a| s.at[a] - at[a]);
                         d[0] * d[0] + d[1] * d[1] <= range * range
                     };
-                    let mut found: Vec<u32> = Vec::new();
-                    grid.around(
-                        at,
-                        range,
-                        |s| {
-                            if near(s) {
-                                found.push(s.sender)
-                            }
-                        },
-                        |_| false,
-                    );
+                    let mut seen = Seen(Vec::new());
+                    grid.around(at, range, &mut seen);
+                    let mut found: Vec<u32> = seen.0.iter().filter(|s| near(s)).map(|s| s.sender).collect();
                     found.sort_unstable();
                     let all: Vec<u32> = sites.iter().filter(|s| near(s)).map(|s| s.sender).collect();
                     assert_eq!(found, all, "{n} {flat} {at:?}");

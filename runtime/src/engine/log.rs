@@ -67,7 +67,13 @@ impl Log {
     /// Keeps registers.
     pub fn keep(&mut self, registers: &[f64]) -> Range<u32> {
         let from = self.registers.len() as u32;
-        self.registers.extend_from_slice(registers);
+        // Of a known length, so that it needs no call.
+        match *registers {
+            [a] => self.registers.push(a),
+            [a, b, c] => self.registers.extend_from_slice(&[a, b, c]),
+            [a, b, c, d, e, f] => self.registers.extend_from_slice(&[a, b, c, d, e, f]),
+            _ => self.registers.extend_from_slice(registers),
+        }
         from..self.registers.len() as u32
     }
 

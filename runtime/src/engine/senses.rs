@@ -6,7 +6,7 @@
 use super::cast::sensor_period;
 use crate::{Reading, Scene, Time};
 use serde::{Deserialize, Serialize};
-use soifra_graph::{Type, TypeTable, reason};
+use soifra_graph::{Type, TypeTable, eval::copy_registers, reason};
 
 /// A sensor of a robot.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -76,7 +76,7 @@ impl Senses {
         slot.record = record;
         if valid {
             let at = slot.at as usize;
-            self.registers[at..at + registers.len()].copy_from_slice(registers);
+            copy_registers(registers, &mut self.registers[at..at + registers.len()]);
         }
         true
     }

@@ -121,10 +121,6 @@ pub(super) fn many(f: Function, frame: &mut [f64], d: usize, a: usize) -> Result
             let value = g::point_to_body(take(args, 0)?, take(args, 3)?);
             give(frame, d, value)
         }
-        Function::Twist => {
-            let [forward, turn, left, up] = take(args, 0)?;
-            give(frame, d, [forward, left, up, 0.0, 0.0, turn])
-        }
         Function::CircleIntersections => {
             let ([ra], [rb]) = (take(args, 3)?, take(args, 7)?);
             let (n, [p, q]) = g::circle_intersections(take(args, 0)?, ra, take(args, 4)?, rb);

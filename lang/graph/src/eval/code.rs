@@ -96,6 +96,8 @@ pub(super) enum Instr {
     Sub3 { d: u32, a: u32, b: u32 },
     /// `b` is a scalar.
     Scale3 { d: u32, a: u32, b: u32 },
+    /// `b` is a scalar.
+    Div3 { d: u32, a: u32, b: u32 },
     AddN { n: u16, d: u32, a: u32, b: u32 },
     SubN { n: u16, d: u32, a: u32, b: u32 },
     NegN { n: u16, d: u32, a: u32 },
@@ -156,6 +158,9 @@ pub(super) enum Instr {
     ListFirst { list: u32, to: u32 },
     /// Makes the next item current and jumps; falls through after the last.
     ListNext { list: u32, to: u32 },
+    /// As `ListNext`, for a list in the frame, of whose items the body reads three registers to `item`.
+    /// Items lie `stride` apart; `q` is the list's state.
+    ListNext3 { stride: u16, q: u32, item: u32, to: u32 },
     /// Appends the current item to the list at `d`.
     Keep { list: u32, d: u32 },
     /// Appends the value at `a` to the list at `d`.
@@ -193,7 +198,8 @@ pub(super) struct ListRef {
     pub capacity: u32,
     /// Registers of an item.
     pub width: u32,
-    /// Two registers for index and count as bits, a third for the best key so far.
+    /// Two registers for where what the body reads lies, of the current item and behind the last, as bits;
+    /// a third for the best key so far.
     pub state: u32,
     /// Where the body wants the item.
     pub item: u32,

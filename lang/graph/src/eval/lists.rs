@@ -1,35 +1,17 @@
 //! What the machine does with lists and with registers in any space. `None` stands for registers that
 //! are not there.
 
-use super::Memory;
+use super::{Memory, copy_registers};
 use super::code::{ListRef, Program, Space};
 use crate::reason;
 
-/// Copies registers between two places of which the compiler does not know that they are apart, without
-/// the call that a copy of unknown length costs where it is short.
-#[inline]
-fn copy(from: &[f64], to: &mut [f64]) {
-    macro_rules! short {
-        ($($n:literal)*) => {
-            match from.len() {
-                $($n => {
-                    if let (Some(from), Some(to)) = (from.first_chunk::<$n>(), to.first_chunk_mut::<$n>()) {
-                        *to = *from;
-                    }
-                })*
-                _ => to.copy_from_slice(from),
-            }
-        };
-    }
-    short!(0 1 2 3 4 5 6 7 8);
-}
-
-/// As [`copy`], within the frame.
+/// As [`copy_registers`], within the frame.
 #[inline]
 fn copy_within(frame: &mut [f64], from: usize, to: usize, n: usize) -> Option<()> {
     macro_rules! short {
         ($($n:literal)*) => {
             match n {
+                0 => {}
                 $($n => {
                     let value = *frame.get(from..)?.first_chunk::<$n>()?;
                     *frame.get_mut(to..)?.first_chunk_mut::<$n>()? = value;
@@ -86,8 +68,11 @@ impl Program {
         if let Space::Frame = space {
             return copy_within(frame, from, to, n);
         }
+        if n == 0 {
+            return Some(());
+        }
         let source = self.registers(space, &[], memory).get(from..from + n)?;
-        copy(source, frame.get_mut(to..to + n)?);
+        copy_registers(source, frame.get_mut(to..to + n)?);
         Some(())
     }
 
@@ -110,17 +95,17 @@ impl Program {
         self.registers(l.space, frame, memory).get(from..from + n)
     }
 
-    /// First register of item `i`.
-    #[inline]
-    fn place(l: &ListRef, i: usize) -> usize {
-        l.at as usize + 1 + i * l.width as usize
+    /// Registers from one item to the next. What has no registers is counted as if it had one.
+    #[inline(always)]
+    fn stride(l: &ListRef) -> u64 {
+        u64::from(l.width.max(1))
     }
 
-    /// Puts what the body reads of item `i` where the body wants it.
+    /// Puts what the body reads of an item where the body wants it; `from` is where it lies.
     #[inline(always)]
-    fn item(&self, l: &ListRef, i: usize, frame: &mut [f64], memory: &Memory<'_>) -> Option<()> {
-        let (from, n) = (l.part.0 as usize, l.part.1 as usize);
-        let (from, to) = (Program::place(l, i) + from, l.item as usize + from);
+    fn item(&self, l: &ListRef, from: u64, frame: &mut [f64], memory: &Memory<'_>) -> Option<()> {
+        let (from, n) = (from as usize, l.part.1 as usize);
+        let to = l.item as usize + l.part.0 as usize;
         if l.space == Space::Frame && n <= FEW {
             return few(frame, from, to, n);
         }
@@ -135,9 +120,10 @@ impl Program {
         if count == 0 {
             return Some(false);
         }
+        let first = u64::from(l.at) + 1 + u64::from(l.part.0);
         let state = frame.get_mut(l.state as usize..)?.first_chunk_mut::<2>()?;
-        *state = [f64::from_bits(0), f64::from_bits(count as u64)];
-        self.item(l, 0, frame, memory)?;
+        *state = [f64::from_bits(first), f64::from_bits(first + count as u64 * Program::stride(l))];
+        self.item(l, first, frame, memory)?;
         Some(true)
     }
 
@@ -146,26 +132,32 @@ impl Program {
     pub(super) fn next_item(&self, list: u32, frame: &mut [f64], memory: &Memory<'_>) -> Option<bool> {
         let l = self.lists.get(list as usize)?;
         let at = l.state as usize;
-        let next = frame.get(at)?.to_bits() + 1;
+        let next = frame.get(at)?.to_bits() + Program::stride(l);
         if next >= frame.get(at + 1)?.to_bits() {
             return Some(false);
         }
         *frame.get_mut(at)? = f64::from_bits(next);
-        self.item(l, next as usize, frame, memory)?;
+        self.item(l, next, frame, memory)?;
         Some(true)
     }
 
-    /// Index of the current item.
+    /// First register of the current item.
     #[inline]
     pub(super) fn current(l: &ListRef, frame: &[f64]) -> Option<usize> {
-        Some(frame.get(l.state as usize)?.to_bits() as usize)
+        (frame.get(l.state as usize)?.to_bits() as usize).checked_sub(l.part.0 as usize)
+    }
+
+    /// First register of the first item.
+    #[inline]
+    pub(super) fn first_place(l: &ListRef) -> usize {
+        l.at as usize + 1
     }
 
     /// Appends the current item to the list at `d`.
     #[inline(never)]
     pub(super) fn keep(&self, list: u32, frame: &mut [f64], d: usize, memory: &Memory<'_>) -> Option<()> {
         let l = self.lists.get(list as usize)?;
-        let from = Program::place(l, Program::current(l, frame)?);
+        let from = Program::current(l, frame)?;
         let to = grow(l, frame, d, l.width as usize)?;
         self.transfer(l.space, from, frame, to, l.width as usize, memory)
     }
@@ -197,26 +189,26 @@ impl Program {
         memory: &Memory<'_>,
     ) -> Option<()> {
         let l = self.lists.get(list as usize)?;
-        let (i, key) = (Program::current(l, frame)?, *frame.get(a)?);
+        let (item, key) = (Program::current(l, frame)?, *frame.get(a)?);
         let best = frame.get_mut(l.state as usize + 2)?;
-        if i == 0 || key < *best {
+        if item == Program::first_place(l) || key < *best {
             *best = key;
-            self.found(l, i, frame, d, memory)?;
+            self.found(l, item, frame, d, memory)?;
         }
         Some(())
     }
 
-    /// Item `i` as an optional at `d`.
+    /// The item from register `item` on as an optional at `d`.
     pub(super) fn found(
         &self,
         l: &ListRef,
-        i: usize,
+        item: usize,
         frame: &mut [f64],
         d: usize,
         memory: &Memory<'_>,
     ) -> Option<()> {
         *frame.get_mut(d)? = 0.0;
-        self.transfer(l.space, Program::place(l, i), frame, d + 1, l.width as usize, memory)
+        self.transfer(l.space, item, frame, d + 1, l.width as usize, memory)
     }
 
     /// The item at an index, as an optional at `d`.
@@ -229,7 +221,7 @@ impl Program {
         memory: &Memory<'_>,
     ) -> Option<()> {
         if index >= 0.0 && index < self.count(l, frame, memory)? as f64 {
-            return self.found(l, index as usize, frame, d, memory);
+            return self.found(l, Program::first_place(l) + index as usize * l.width as usize, frame, d, memory);
         }
         *frame.get_mut(d)? = reason::tag(reason::NO_SUCH_ITEM);
         Some(())
@@ -251,7 +243,7 @@ impl Program {
             return Some(());
         }
         let (first, kept) = if count == capacity { (1, count - 1) } else { (0, count) };
-        self.transfer(l.space, Program::place(l, first), frame, d + 1, kept * width, memory)?;
+        self.transfer(l.space, Program::first_place(l) + first * width, frame, d + 1, kept * width, memory)?;
         self.transfer(Space::Frame, a, frame, d + 1 + kept * width, width, memory)?;
         *frame.get_mut(d)? = (kept + 1) as f64;
         Some(())

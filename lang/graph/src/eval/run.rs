@@ -249,6 +249,13 @@ impl Program {
                     let (v, by) = (vector!(a), get!(b));
                     set_vector!(d, v.map(|x| x * by))
                 }
+                Instr::Div3 { d, a, b } => {
+                    let (v, by) = (vector!(a), get!(b));
+                    if by == 0.0 {
+                        return self.division_by_zero(rest.len());
+                    }
+                    set_vector!(d, v.map(|x| x / by))
+                }
                 Instr::Dot { d, a, b } => {
                     let ([ax, ay, az], [bx, by, bz]) = (vector!(a), vector!(b));
                     finite!(d, ax * bx + ay * by + az * bz)
@@ -268,6 +275,17 @@ impl Program {
                         rest = from(to as usize);
                     }
                 }
+                Instr::ListNext3 { stride, q, item, to } => {
+                    let next = get!(q).to_bits() + u64::from(stride);
+                    if next < get!(q + 1).to_bits() {
+                        set!(q, f64::from_bits(next));
+                        for i in 0..3 {
+                            let x = *some!(frame.get(next as usize + i));
+                            *some!(frame.get_mut(item as usize + i)) = x;
+                        }
+                        rest = from(to as usize);
+                    }
+                }
                 Instr::Keep { list, d } => some!(self.keep(list, frame, d as usize, m.memory)),
                 Instr::Append { list, d, a } => {
                     some!(self.append(list, frame, d as usize, a as usize, m.memory));
@@ -280,6 +298,9 @@ impl Program {
                     if let Some(to) = try_!(self.robot_loop(instr, frame, m)) {
                         rest = from(to as usize);
                     }
+                }
+                Instr::Now { .. } | Instr::Own { .. } | Instr::Reading { .. } | Instr::Heard { .. } => {
+                    try_!(self.question(instr, frame, m));
                 }
                 Instr::Do { effect, a } => {
                     try_!(self.perform(effect, some!(frame.get(a as usize..)), m));

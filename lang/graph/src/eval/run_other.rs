@@ -2,7 +2,7 @@
 
 use super::code::{EffectCode, Instr, Program};
 use super::run::{MAX_INT, Machine, array};
-use super::{Effect, FaultKind, MAX_ROBOTS, builtins, geometry as g, lists};
+use super::{Effect, FaultKind, MAX_ROBOTS, builtins, copy_registers, geometry as g, lists};
 use crate::Distribution;
 
 /// What must be there, for the compiler made it so.
@@ -140,15 +140,15 @@ impl Program {
         match *instr {
             Instr::Found { list: l, d } => {
                 let l = list(l)?;
-                let i = get(frame, l.state)?.to_bits() as usize;
-                some(self.found(l, i, frame, d as usize, m.memory))
+                let item = some(Program::current(l, frame))?;
+                some(self.found(l, item, frame, d as usize, m.memory))
             }
             Instr::Greatest { list: l, d, a } => {
                 let l = list(l)?;
-                let (i, key) = (get(frame, l.state)?.to_bits() as usize, get(frame, a)?);
-                if i == 0 || key > get(frame, l.state + 2)? {
+                let (item, key) = (some(Program::current(l, frame))?, get(frame, a)?);
+                if item == Program::first_place(l) || key > get(frame, l.state + 2)? {
                     set(frame, l.state + 2, key)?;
-                    some(self.found(l, i, frame, d as usize, m.memory))?;
+                    some(self.found(l, item, frame, d as usize, m.memory))?;
                 }
                 Ok(())
             }
@@ -187,7 +187,8 @@ impl Program {
     }
 
     /// What is asked of the surroundings.
-    fn question(&self, instr: &Instr, frame: &mut [f64], m: &mut Machine<'_, '_>) -> Result<(), FaultKind> {
+    #[inline(never)]
+    pub(super) fn question(&self, instr: &Instr, frame: &mut [f64], m: &mut Machine<'_, '_>) -> Result<(), FaultKind> {
         match *instr {
             Instr::Now { d } => finite(frame, d, m.env.now()?),
             Instr::Steps { d } => finite(frame, d, m.env.steps()?),
@@ -282,7 +283,7 @@ impl Program {
             EffectCode::State { state, at, n } => {
                 let registers = value(*n)?;
                 let slot = m.memory.states.get_mut(*at as usize..(*at + *n) as usize);
-                some(slot)?.copy_from_slice(registers);
+                copy_registers(registers, some(slot)?);
                 Effect::StateSet { state: *state, registers }
             }
             EffectCode::Command { port, n } => Effect::Command { port: *port, registers: value(*n)? },

@@ -138,6 +138,14 @@ impl Compiler<'_> {
         Ok(Place::frame(d))
     }
 
+    /// The instruction that divides by a constant. A product is the same where the reciprocal is exact.
+    fn quotient(&mut self, k: u32) -> impl FnOnce(u32, u32) -> Instr + use<> {
+        let x = self.program.constants.get(k as usize).copied().unwrap_or_default();
+        let power_of_two = x.is_normal() && x.to_bits() << 12 == 0 && x.recip().is_normal();
+        let by = if power_of_two { self.pooled(x.recip()) } else { k };
+        move |d, a| if power_of_two { Instr::MulK { d, a, k: by } } else { Instr::DivK { d, a, k: by } }
+    }
+
     fn negated(&mut self, k: u32) -> u32 {
         let x = self.program.constants.get(k as usize).copied().unwrap_or_default();
         self.pooled(-x)
@@ -197,7 +205,8 @@ impl Compiler<'_> {
                 return self.finish_sum(top, dest, e.span, |d| Instr::MulK { d, a, k });
             }
             (Binary::Div, Operand::Register(a), Operand::Constant(k)) if !by_zero(self, k) => {
-                return self.finish_sum(top, dest, e.span, |d| Instr::DivK { d, a, k });
+                let instr = self.quotient(k);
+                return self.finish_sum(top, dest, e.span, |d| instr(d, a));
             }
             (_, a, b) => (self.loaded(a, e.span)?, self.loaded(b, e.span)?),
         };
@@ -226,7 +235,7 @@ impl Compiler<'_> {
             (Binary::Mul, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => scale(n, d, a, b),
             (Binary::Mul, s, t) if typing::number(s).is_some() && same_layout(t, &e.ty) => scale(n, d, b, a),
             (Binary::Div, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => {
-                Instr::DivN { n, d, a, b }
+                if n == 3 { Instr::Div3 { d, a, b } } else { Instr::DivN { n, d, a, b } }
             }
             _ => return error(e.span, format!("{} and {} do not go together here", l.ty, r.ty)),
         };

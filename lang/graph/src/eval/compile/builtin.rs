@@ -87,6 +87,19 @@ impl Compiler<'_> {
                 self.emit(Instr::Function2 { f, d, a, b }, e.span);
                 Ok(Place::frame(d))
             }
+            F::Twist => {
+                let [forward, turn, left, up] = arguments(e)?;
+                self.check_call(e, f)?;
+                let d = self.dest(dest, 6, e.span)?;
+                let top = self.body.top;
+                for (arg, at) in [(forward, 0), (left, 1), (up, 2), (turn, 5)] {
+                    self.generate(arg, Some(d + at))?;
+                    self.body.top = top;
+                }
+                self.constant_into(d + 3, 0.0, e.span);
+                self.constant_into(d + 4, 0.0, e.span);
+                Ok(Place::frame(d))
+            }
             F::Clamp
             | F::HeadingOf
             | F::Polar
@@ -99,7 +112,6 @@ impl Compiler<'_> {
             | F::ToBody
             | F::PointFromBody
             | F::PointToBody
-            | F::Twist
             | F::CircleIntersections
             | F::FirstContact
             | F::Exactly

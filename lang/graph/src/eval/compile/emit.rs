@@ -169,7 +169,8 @@ impl Instr {
             | Instr::RobotFirst { to, .. }
             | Instr::RobotNext { to, .. }
             | Instr::ListFirst { to, .. }
-            | Instr::ListNext { to, .. } => Some(to),
+            | Instr::ListNext { to, .. }
+            | Instr::ListNext3 { to, .. } => Some(to),
             _ => None,
         }
     }

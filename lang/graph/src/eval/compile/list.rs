@@ -3,7 +3,7 @@
 use super::emit::error;
 use super::expr::{arguments, gives, writes_last};
 use super::{Compiled, Compiler, Place};
-use crate::eval::code::{Instr, ListRef};
+use crate::eval::code::{Instr, ListRef, Space};
 use crate::eval::widths::same_layout;
 use crate::{Expr, Function, ListOp, Span, Type, reason};
 
@@ -69,7 +69,7 @@ impl Compiler<'_> {
         self.body.in_loop = nested;
         self.end_loop();
         self.land(&next);
-        self.emit(Instr::ListNext { list: index, to: first }, at);
+        self.emit(next_item(&list, index, first), at);
         self.repeat(before, u64::from(list.capacity));
         Ok(())
     }
@@ -250,5 +250,15 @@ impl Compiler<'_> {
         );
         self.body.top = top;
         Ok(Place::frame(d))
+    }
+}
+
+/// The instruction that goes on to the next item and jumps.
+fn next_item(list: &ListRef, index: u32, to: u32) -> Instr {
+    match (list.space, list.part, u16::try_from(list.width)) {
+        (Space::Frame, (from, 3), Ok(stride)) => {
+            Instr::ListNext3 { stride, q: list.state, item: list.item + from, to }
+        }
+        _ => Instr::ListNext { list: index, to },
     }
 }
