@@ -326,11 +326,13 @@ impl Visitor for Listener<'_> {
             return self.look_for_received(sites);
         }
         // Each is put down, and counted when it is heard: nothing that would have to be guessed.
+        let mut found = self.found;
         for site in sites {
             let far = self.far(site.at);
-            self.near.0[self.found] = Heard { far, sender: site.sender, slot: site.message };
-            self.found += usize::from(far <= self.square && site.sender != self.receiver);
+            self.near.0[found] = Heard { far, sender: site.sender, slot: site.message };
+            found += usize::from(far <= self.square && site.sender != self.receiver);
         }
+        self.found = found;
     }
 
     fn enough(&self, seen: f64) -> bool {

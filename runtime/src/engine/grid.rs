@@ -30,7 +30,7 @@ pub(crate) struct Grid {
     starts: Vec<u32>,
     sites: Vec<Site>,
     /// Cell of each site, while it is built.
-    cells: Vec<u32>,
+    cell_of: Vec<u32>,
 }
 
 impl Grid {
@@ -60,12 +60,12 @@ impl Grid {
         self.size = extent.map(|e| ((e / self.cell) as usize + 1).min(most));
         self.starts.clear();
         self.starts.resize(self.size[0] * self.size[1] + 1, 0);
-        self.cells.clear();
+        self.cell_of.clear();
         for s in sites {
             let [x, y] =
                 [0, 1].map(|a| (((s.at[a] - self.low[a]) / self.cell) as usize).min(self.size[a] - 1));
             let c = y * self.size[0] + x;
-            self.cells.push(c as u32);
+            self.cell_of.push(c as u32);
             self.starts[c] += 1;
         }
         let mut sum = 0;
@@ -76,7 +76,7 @@ impl Grid {
         self.sites.clear();
         self.sites.resize(sites.len(), Site { at: [0.0; 3], sender: 0, message: 0 });
         // From the ends, which so become the starts.
-        for (s, &c) in sites.iter().zip(&self.cells).rev() {
+        for (s, &c) in sites.iter().zip(&self.cell_of).rev() {
             let end = &mut self.starts[c as usize];
             *end -= 1;
             self.sites[*end as usize] = *s;
@@ -89,17 +89,19 @@ impl Grid {
         if self.sites.is_empty() {
             return;
         }
-        let cell_of = |a: usize| {
+        let nearest = |a: usize| {
             let x = ((at[a] - self.low[a]) / self.cell).clamp(-1e9, 1e9);
             // Rounds down, without a call of `floor`.
             x as i64 - i64::from(x < x as i64 as f64)
         };
-        let center = [cell_of(0), cell_of(1)];
+        let center = [nearest(0), nearest(1)];
         let size = [self.size[0] as i64, self.size[1] as i64];
         if range < self.cell {
             let [from, to] = [(center[0] - 1).max(0), (center[0] + 1).min(size[0] - 1)];
-            for y in (center[1] - 1).max(0)..=(center[1] + 1).min(size[1] - 1) {
-                self.row(y, from, to, visitor);
+            if from <= to {
+                for y in (center[1] - 1).max(0)..=(center[1] + 1).min(size[1] - 1) {
+                    self.cells(y, from, to, visitor);
+                }
             }
             return;
         }
@@ -129,11 +131,15 @@ impl Grid {
         }
     }
 
-    #[inline]
     fn row(&self, y: i64, from: i64, to: i64, visitor: &mut impl Visitor) {
-        if from > to || to < 0 || from >= self.size[0] as i64 {
-            return;
+        if from <= to && to >= 0 && from < self.size[0] as i64 {
+            self.cells(y, from, to, visitor);
         }
+    }
+
+    /// Cells of a row that are there.
+    #[inline(always)]
+    fn cells(&self, y: i64, from: i64, to: i64, visitor: &mut impl Visitor) {
         let c = y as usize * self.size[0];
         let (a, b) = (self.starts[c + from as usize], self.starts[c + to as usize + 1]);
         visitor.look(&self.sites[a as usize..b as usize]);

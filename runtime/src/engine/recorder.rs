@@ -23,21 +23,29 @@ impl<'m> Recorder<'m> {
     }
 
     /// Records what `event` gives; nothing is made when no trace is kept. Returns the number.
+    #[inline(always)]
     pub fn record(
         &mut self,
         t: Time,
         causes: impl IntoIterator<Item = u64>,
         event: impl FnOnce() -> Event,
     ) -> Option<u64> {
-        if !self.enabled {
-            return None;
-        }
+        if self.enabled { Some(self.write(t, causes, event)) } else { None }
+    }
+
+    #[inline(never)]
+    fn write(
+        &mut self,
+        t: Time,
+        causes: impl IntoIterator<Item = u64>,
+        event: impl FnOnce() -> Event,
+    ) -> u64 {
         let n = self.next;
         self.next += 1;
         if self.failed.is_none() {
             let record = Record { n, t, causes: causes.into_iter().collect(), event: event() };
             self.failed = self.sink.record(&record).err();
         }
-        Some(n)
+        n
     }
 }

@@ -158,6 +158,8 @@ pub(super) enum Instr {
     ListFirst { list: u32, to: u32 },
     /// Makes the next item current and jumps; falls through after the last.
     ListNext { list: u32, to: u32 },
+    /// As `ListFirst`, for a list in the frame, of whose items the body reads three registers.
+    ListFirst3 { list: u32, to: u32 },
     /// As `ListNext`, for a list in the frame, of whose items the body reads three registers to `item`.
     /// Items lie `stride` apart; `q` is the list's state.
     ListNext3 { stride: u16, q: u32, item: u32, to: u32 },
@@ -165,6 +167,8 @@ pub(super) enum Instr {
     Keep { list: u32, d: u32 },
     /// Appends the value at `a` to the list at `d`.
     Append { list: u32, d: u32, a: u32 },
+    /// Appends the three registers at `a` to the list at `d`, which has room for `most`.
+    Append3 { most: u16, d: u32, a: u32 },
     /// The current item as an optional.
     Found { list: u32, d: u32 },
     /// The current item as an optional, when its key is the least so far.

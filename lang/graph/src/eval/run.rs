@@ -275,6 +275,22 @@ impl Program {
                         rest = from(to as usize);
                     }
                 }
+                Instr::ListFirst3 { list, to } => {
+                    let l = some!(self.lists.get(list as usize));
+                    let count = get!(l.at).min(f64::from(l.capacity)) as u64;
+                    if count == 0 {
+                        rest = from(to as usize);
+                    } else {
+                        let first = u64::from(l.at) + 1 + u64::from(l.part.0);
+                        set!(l.state, f64::from_bits(first));
+                        set!(l.state + 1, f64::from_bits(first + count * u64::from(l.width)));
+                        let item = l.item as usize + l.part.0 as usize;
+                        for i in 0..3 {
+                            let x = *some!(frame.get(first as usize + i));
+                            *some!(frame.get_mut(item + i)) = x;
+                        }
+                    }
+                }
                 Instr::ListNext3 { stride, q, item, to } => {
                     let next = get!(q).to_bits() + u64::from(stride);
                     if next < get!(q + 1).to_bits() {
@@ -287,6 +303,16 @@ impl Program {
                     }
                 }
                 Instr::Keep { list, d } => some!(self.keep(list, frame, d as usize, m.memory)),
+                Instr::Append3 { most, d, a } => {
+                    let n = get!(d);
+                    if n >= f64::from(most) {
+                        return self.malformed(rest.len());
+                    }
+                    let v = vector!(a);
+                    let to = d as usize + 1 + 3 * n as usize;
+                    *some!(some!(frame.get_mut(to..)).first_chunk_mut::<3>()) = v;
+                    set!(d, n + 1.0);
+                }
                 Instr::Append { list, d, a } => {
                     some!(self.append(list, frame, d as usize, a as usize, m.memory));
                 }

@@ -169,6 +169,7 @@ impl Instr {
             | Instr::RobotFirst { to, .. }
             | Instr::RobotNext { to, .. }
             | Instr::ListFirst { to, .. }
+            | Instr::ListFirst3 { to, .. }
             | Instr::ListNext { to, .. }
             | Instr::ListNext3 { to, .. } => Some(to),
             _ => None,

@@ -61,7 +61,8 @@ impl Compiler<'_> {
         body: impl FnOnce(&mut Self, u32, &mut Vec<u32>) -> Compiled<()>,
     ) -> Compiled<()> {
         let index = self.add_list(list);
-        self.jump(Instr::ListFirst { list: index, to: 0 }, out, at);
+        let (go_in, go_on) = loop_instructions(&list, index);
+        self.jump(go_in, out, at);
         let (first, before) = (self.here(), self.body.cost);
         let nested = std::mem::replace(&mut self.body.in_loop, true);
         let mut next = Vec::new();
@@ -69,7 +70,7 @@ impl Compiler<'_> {
         self.body.in_loop = nested;
         self.end_loop();
         self.land(&next);
-        self.emit(next_item(&list, index, first), at);
+        self.emit(go_on(first), at);
         self.repeat(before, u64::from(list.capacity));
         Ok(())
     }
@@ -132,13 +133,15 @@ impl Compiler<'_> {
                     c.jump(Instr::Jump { to: 0 }, &mut found, at);
                 }
                 ListOp::Map => {
-                    let (Type::List(t, _), width) = (&e.ty, list) else {
-                        return error(at, "no list");
-                    };
+                    let Type::List(t, _) = &e.ty else { return error(at, "no list") };
                     let n = c.width(t, at)?;
                     let place = c.gen_as(body, t, None)?;
                     let a = c.in_frame(place, n, at)?;
-                    c.emit(Instr::Append { list: width, d, a }, at);
+                    let instr = match (n, u16::try_from(c.program.lists[list as usize].out_capacity)) {
+                        (3, Ok(most)) => Instr::Append3 { most, d, a },
+                        _ => Instr::Append { list, d, a },
+                    };
+                    c.emit(instr, at);
                 }
                 ListOp::MinBy | ListOp::MaxBy => {
                     let a = c.scalar(body)?;
@@ -253,12 +256,20 @@ impl Compiler<'_> {
     }
 }
 
-/// The instruction that goes on to the next item and jumps.
-fn next_item(list: &ListRef, index: u32, to: u32) -> Instr {
-    match (list.space, list.part, u16::try_from(list.width)) {
-        (Space::Frame, (from, 3), Ok(stride)) => {
-            Instr::ListNext3 { stride, q: list.state, item: list.item + from, to }
-        }
-        _ => Instr::ListNext { list: index, to },
-    }
+/// The instructions that make the first item of a list current and the next: the latter jumps to where it is
+/// told.
+fn loop_instructions(list: &ListRef, index: u32) -> (Instr, impl FnOnce(u32) -> Instr + use<>) {
+    let ListRef { state: q, item, width, .. } = *list;
+    let three = match (list.space, list.part, u16::try_from(width)) {
+        (Space::Frame, (from, 3), Ok(stride)) => Some((item + from, stride)),
+        _ => None,
+    };
+    let first = match three {
+        Some(_) => Instr::ListFirst3 { list: index, to: 0 },
+        None => Instr::ListFirst { list: index, to: 0 },
+    };
+    (first, move |to| match three {
+        Some((item, stride)) => Instr::ListNext3 { stride, q, item, to },
+        None => Instr::ListNext { list: index, to },
+    })
 }
