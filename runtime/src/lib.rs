@@ -13,7 +13,7 @@ pub mod seed;
 pub mod time;
 pub mod trace;
 
-pub use engine::{Engine, Outcome, RunReport};
+pub use engine::{Engine, Outcome, RunReport, Snapshot};
 pub use mission::{Mission, Settings};
 pub use ports::{Platform, Reading, Readings, Report, WorldTruth};
 pub use scene::Scene;

@@ -12,7 +12,7 @@ use clap::{Args, ValueHint};
 use serde::Serialize;
 use soifra_platforms::sim::Simulator;
 use soifra_runtime::{
-    Mission, Record, RunReport, Settings,
+    Mission, Record, RunReport, Settings, Snapshot, Time,
     replay::{self, Difference, ReplayError},
 };
 use std::{cell::RefCell, fs::File, io::BufReader};
@@ -27,6 +27,10 @@ pub struct Arguments {
     /// are compared too
     #[arg(long)]
     recorded: bool,
+    /// Begin at the last snapshot at or before this instant, in seconds of virtual time, instead of at the start;
+    /// the graph is executed on the recorded readings
+    #[arg(long, value_name = "SECONDS", value_parser = instant)]
+    from: Option<Time>,
     /// Threads to use; changes the speed, never the result [default: RAYON_NUM_THREADS, else all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -42,6 +46,8 @@ struct Document<'a> {
     seed: u64,
     /// `same` or `differs`.
     outcome: &'static str,
+    /// Where it began, in seconds.
+    from_s: f64,
     records: u64,
     complete: bool,
     difference: Option<JsonDifference<'a>>,
@@ -56,22 +62,38 @@ struct JsonDifference<'a> {
 
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
-    let mut reader = Reader::open(&a.trace).map_err(|e| unreadable(&a.trace, &e))?;
+    let unreadable = |e: &TraceError| unreadable(&a.trace, e);
+    let mut reader = Reader::open(&a.trace).map_err(|e| unreadable(&e))?;
+    let snapshot = match a.from {
+        Some(from) => Reader::open(&a.trace).and_then(|r| r.snapshot(from)).map_err(|e| unreadable(&e))?,
+        None => None,
+    };
+    let (from_s, before) = snapshot.as_ref().map_or((0.0, 0), |s| (s.t.seconds(), s.next));
     let header = reader.header().clone();
     let mission = execute::load(graph(&a.trace, &header.graph_json)?)?;
     let settings =
         Settings { seed: header.seed(), params: header.params.clone(), threads: execute::threads(a.threads) };
 
     let tape = Tape { path: &a.trace, reader: &mut reader, count: 0, failure: RefCell::default() };
-    let (result, tape) = replay(a, &mission, &settings, tape)?;
-    let records = tape.count;
+    let (result, tape) = replay(a, &mission, &settings, snapshot, tape)?;
+    let records = tape.count.saturating_sub(before);
     if let Some(e) = tape.failure.into_inner() {
-        return Err(unreadable(&a.trace, &e));
+        return Err(unreadable(&e));
     }
     let complete = reader.complete();
     let difference = match result {
         Ok(_) => None,
         Err(ReplayError::Difference(d)) => Some(d),
+        Err(ReplayError::Snapshot) => {
+            let why = format!("its snapshot at {from_s} s is not one of its mission");
+            return Err(Refusal::about(
+                &a.trace,
+                "S9018",
+                "the trace cannot be read",
+                why,
+                "leave `--from` out",
+            ));
+        }
         Err(ReplayError::Start(d)) => {
             let findings = Findings { diagnostics: vec![d], sources: mission.graph().sources.clone() };
             return Err(Refusal { findings, exit: Exit::WrongInput });
@@ -85,15 +107,17 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     }
     match a.format {
         Format::Human if difference.is_none() => output::print(&format!(
-            "{}, seed {}: {records} records, nothing differs\n",
+            "{}, seed {}: {records} records{}, nothing differs\n",
             header.mission,
-            header.seed()
+            header.seed(),
+            if a.from.is_some() { format!(" from {from_s} s on") } else { String::new() },
         ))?,
         Format::Human => {}
         Format::Json => output::print_json(&Document {
             schema: output::SCHEMA,
             mission: &header.mission,
             seed: header.seed(),
+            from_s,
             outcome: if difference.is_some() { "differs" } else { "same" },
             records,
             complete,
@@ -107,15 +131,24 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     Ok(if difference.is_some() { Exit::Failed } else { Exit::Success })
 }
 
+/// An instant of a run, from seconds.
+fn instant(text: &str) -> Result<Time, String> {
+    let seconds = text.trim().trim_end_matches('s').trim_end().parse().ok().and_then(Time::from_seconds);
+    seconds.filter(|t| *t >= Time::ZERO).ok_or_else(|| "give seconds of virtual time, from 0 on".into())
+}
+
 type Replayed<'r> = (Result<RunReport, ReplayError>, Tape<'r>);
 
 fn replay<'r>(
     a: &Arguments,
     mission: &Mission,
     settings: &Settings,
+    snapshot: Option<Snapshot>,
     mut tape: Tape<'r>,
 ) -> Result<Replayed<'r>, Refusal> {
-    let result = if a.recorded {
+    let result = if let Some(snapshot) = snapshot {
+        replay::verify_from(mission, settings, snapshot, &mut tape)
+    } else if a.recorded || a.from.is_some() {
         replay::verify(mission, settings, &mut tape)
     } else {
         match mission.scene(settings) {

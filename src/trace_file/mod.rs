@@ -5,6 +5,7 @@
 //! | `/soifra/header` | `soifra.Header` | graph, parameters, scene, versions: the first message |
 //! | `/scene` | `foxglove.SceneUpdate` | what viewers draw; derived from the header |
 //! | `/tf` | `foxglove.FrameTransform` | records of poses: number, causes and robot are further members |
+//! | `/soifra/snapshot` | `soifra.Snapshot` | all that a run remembers after an instant: where a replay may begin |
 //! | `/soifra/<kind>` | `soifra.<Kind>` | all other records, as JSON |
 //!
 //! Log times are virtual times. Nothing in the file comes from a clock or a machine.
@@ -23,7 +24,7 @@ mod writer;
 pub use error::TraceError;
 pub use header::{Header, Robot};
 pub use reader::{Reader, Trace, read};
-pub use writer::{CHUNK_BYTES, CHUNK_TIME, Finished, Writer};
+pub use writer::{CHUNK_BYTES, CHUNK_TIME, Finished, SNAPSHOT_TIME, Writer};
 
 use sha2::{Digest, Sha256};
 use std::{fs::File, io, io::Read, path::Path};

@@ -8,7 +8,8 @@ use super::{
     scan::{Content, End, Scanner, damaged},
     transform::Transform,
 };
-use soifra_runtime::{Event, Record, Time};
+use serde::Deserialize;
+use soifra_runtime::{Event, Record, Snapshot, Time};
 use std::{
     fs::File,
     io::{BufReader, Read},
@@ -73,7 +74,7 @@ impl<R: Read> Reader<R> {
                     return Ok(Reader { header, scanner, next: 0, failed: false });
                 }
                 Content::Record => return Err(TraceError::NotATrace),
-                Content::Transform | Content::Other => {}
+                Content::Transform | Content::Snapshot | Content::Other => {}
             }
         }
         Err(if scanner.end() == Some(End::Closed) { TraceError::NotATrace } else { TraceError::NoHeader })
@@ -96,6 +97,26 @@ impl<R: Read> Reader<R> {
         Ok(Trace { header: self.header, records, complete })
     }
 
+    /// The last snapshot that was taken at `until` or before. Nothing can be read afterwards.
+    pub fn snapshot(mut self, until: Time) -> Result<Option<Snapshot>, TraceError> {
+        #[derive(Deserialize)]
+        struct Stamp {
+            t: Time,
+        }
+        let mut last: Option<(u64, Vec<u8>)> = None;
+        let wrong = |at: u64| move |e: serde_json::Error| damaged(at, format!("a snapshot: {e}"));
+        while let Some(message) = self.scanner.next()? {
+            if message.content == Content::Snapshot {
+                let Stamp { t } = serde_json::from_slice(message.data).map_err(wrong(message.at))?;
+                if t > until {
+                    break;
+                }
+                last = Some((message.at, message.data.to_vec()));
+            }
+        }
+        last.map(|(at, data)| serde_json::from_slice(&data).map_err(wrong(at))).transpose()
+    }
+
     fn record(&mut self) -> Result<Option<Record>, TraceError> {
         let next = self.next;
         while let Some(message) = self.scanner.next()? {
@@ -107,7 +128,7 @@ impl<R: Read> Reader<R> {
                     .map_err(unreadable)?
                     .into_record()
                     .ok_or_else(|| damaged(at, format!("record {next}: its time is out of range")))?,
-                Content::Header | Content::Other => continue,
+                Content::Header | Content::Snapshot | Content::Other => continue,
             };
             if record.n != next {
                 return Err(damaged(at, format!("record {} stands where record {next} belongs", record.n)));

@@ -25,6 +25,8 @@ pub(crate) enum Content {
     Record,
     /// A record of a pose as a transform.
     Transform,
+    /// A snapshot.
+    Snapshot,
     /// Something that only others read.
     Other,
 }
@@ -185,6 +187,7 @@ fn interpret(
                 _ if c.message_encoding != "json" => Content::Other,
                 schema::HEADER_TOPIC => Content::Header,
                 schema::TF_TOPIC => Content::Transform,
+                schema::SNAPSHOT_TOPIC => Content::Snapshot,
                 t if t.starts_with(schema::RECORD_PREFIX) => Content::Record,
                 _ => Content::Other,
             };

@@ -12,6 +12,8 @@ pub(crate) const HEADER_TOPIC: &str = "/soifra/header";
 pub(crate) const TF_TOPIC: &str = "/tf";
 /// Topic of the scene, drawn once.
 pub(crate) const SCENE_TOPIC: &str = "/scene";
+/// Topic of the snapshots.
+pub(crate) const SNAPSHOT_TOPIC: &str = "/soifra/snapshot";
 /// What topics of records begin with.
 pub(crate) const RECORD_PREFIX: &str = "/soifra/";
 
@@ -25,6 +27,12 @@ pub(crate) const SCENE_UPDATE: (&str, &str) =
 pub(crate) const HEADER: (&str, &str) = (
     "soifra.Header",
     r#"{"title":"soifra.Header","type":"object","description":"What the run was a function of: graph, parameters, seed (in the scene), versions","properties":{"schema":{"type":"integer"},"mission":{"type":"string"},"title":{"type":"string"},"versions":{"type":"object"},"params":{"type":"object"},"scene":{"type":"object"},"graph":{"type":"object"}},"required":["schema","mission","title","versions","params","scene","graph"]}"#,
+);
+
+/// Schema of [`SNAPSHOT_TOPIC`].
+pub(crate) const SNAPSHOT: (&str, &str) = (
+    "soifra.Snapshot",
+    r#"{"title":"soifra.Snapshot","type":"object","description":"All that a run remembers after an instant: t in nanoseconds, and next, the number of the next record; the rest is for replays by the same version","properties":{"t":{"type":"integer"},"next":{"type":"integer"}},"required":["t","next"]}"#,
 );
 
 /// A member of an event: its name, and its type in the little language of [`member_schema`].

@@ -11,7 +11,7 @@ use super::{
 };
 use mcap::write::NoSeek;
 use sha2::{Digest, Sha256};
-use soifra_runtime::{Record, Time, TraceSink};
+use soifra_runtime::{Record, Snapshot, Time, TraceSink};
 use std::{
     collections::BTreeMap,
     fs::File,
@@ -36,6 +36,7 @@ pub struct Writer {
     /// Frames of the robots.
     frames: Vec<String>,
     chunk: Chunk,
+    snapshots: Snapshots,
     /// The message being written; kept for its memory.
     message: Vec<u8>,
 }
@@ -45,6 +46,21 @@ pub struct Writer {
 struct Chunk {
     bytes: usize,
     start: Time,
+}
+
+/// Least span of virtual time between two snapshots.
+pub const SNAPSHOT_TIME: Time = Time(10_000_000_000);
+
+/// Snapshots are at most one part in so many of a trace, before compression, besides the first.
+const SNAPSHOT_SHARE: usize = 5;
+
+/// When the next snapshot is due.
+#[derive(Default)]
+struct Snapshots {
+    channel: Option<u16>,
+    last: Time,
+    /// Bytes of records still to be written before the next.
+    wait: usize,
 }
 
 /// What [`Writer::finish`] tells about the file.
@@ -77,6 +93,7 @@ impl Writer {
             transforms: None,
             frames: header.scene.robots.iter().map(|r| robot_frame(&r.name)).collect(),
             chunk: Chunk::default(),
+            snapshots: Snapshots::default(),
             message: Vec::with_capacity(1024),
         };
         writer.once(schema::HEADER_TOPIC, schema::HEADER, header.to_message()?)?;
@@ -135,7 +152,24 @@ impl Writer {
                 }
             }
         };
+        self.snapshots.wait = self.snapshots.wait.saturating_sub(self.message.len());
         self.put(channel, record.n, record.t)
+    }
+
+    fn write_snapshot(&mut self, snapshot: &Snapshot) -> io::Result<()> {
+        self.message.clear();
+        serde_json::to_writer(&mut self.message, snapshot)?;
+        (self.snapshots.last, self.snapshots.wait) = (snapshot.t, (SNAPSHOT_SHARE - 1) * self.message.len());
+        self.make_room(snapshot.t)?;
+        let channel = match self.snapshots.channel {
+            Some(channel) => channel,
+            None => {
+                let (name, text) = schema::SNAPSHOT;
+                let channel = self.open_channel(schema::SNAPSHOT_TOPIC, name, text)?;
+                *self.snapshots.channel.insert(channel)
+            }
+        };
+        self.put(channel, snapshot.next, snapshot.t)
     }
 
     /// A message at the start that stands alone on its topic.
@@ -173,6 +207,10 @@ impl Writer {
         self.out.write_to_known_channel(&header, &self.message).map_err(io_error)
     }
 
+    fn unwritable(&self, e: &io::Error) -> String {
+        format!("the trace `{}` cannot be written: {e}", self.path.display())
+    }
+
     fn close_chunk(&mut self) -> io::Result<()> {
         self.chunk.bytes = 0;
         self.out.flush().map_err(io_error)
@@ -184,7 +222,15 @@ const MESSAGE_OVERHEAD: usize = 1 + 8 + 2 + 4 + 8 + 8;
 
 impl TraceSink for Writer {
     fn record(&mut self, record: &Record) -> Result<(), String> {
-        self.write(record).map_err(|e| format!("the trace `{}` cannot be written: {e}", self.path.display()))
+        self.write(record).map_err(|e| self.unwritable(&e))
+    }
+
+    fn wants_snapshot(&mut self, now: Time) -> bool {
+        self.snapshots.wait == 0 && now - self.snapshots.last >= SNAPSHOT_TIME
+    }
+
+    fn snapshot(&mut self, snapshot: &Snapshot) -> Result<(), String> {
+        self.write_snapshot(snapshot).map_err(|e| self.unwritable(&e))
     }
 }
 

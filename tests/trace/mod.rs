@@ -4,4 +4,5 @@ mod file;
 mod fuzz;
 mod plot;
 mod sample;
+mod snapshots;
 mod viewers;

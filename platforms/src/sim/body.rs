@@ -211,6 +211,7 @@ impl Body {
     }
 
     /// Goes on with a piece: from its start on, nothing else is planned. Forgets what ended before `checked`.
+    #[inline(always)] // So that the piece is made where it stays.
     pub fn push(&mut self, piece: Piece, checked: i64) {
         self.cut(piece.start);
         if self.current.start < piece.start {

@@ -7,7 +7,7 @@ use super::{
     scene::{Chassis, Things},
     sensors::{self, Mount, Nearby, Sensor, View},
 };
-use soifra_runtime::{Readings, Scene, Time};
+use soifra_runtime::{Reading, Readings, Scene, Time};
 use std::collections::VecDeque;
 
 /// All sensors that somebody reads. Robots of one platform capture at the same instants, so there are no
@@ -114,14 +114,28 @@ impl Schedule {
         for group in &mut self.groups {
             while let Some(flight) = group.flights.front()
                 && flight.captured.saturating_add(group.latency) <= now.0
-                && let Some(flight) = group.flights.pop_front()
+                && let Some(mut flight) = group.flights.pop_front()
             {
                 let delivered = Time(flight.captured.saturating_add(group.latency));
                 let width = flight.registers.len() / group.robots.len();
-                for (robot, registers) in group.robots.iter().zip(flight.registers.chunks_exact(width.max(1)))
-                {
-                    readings.push(*robot, group.index, Time(flight.captured), delivered, registers);
-                }
+                let captured = Time(flight.captured);
+                // The first are handed over as they are.
+                let from = match readings.registers.is_empty() {
+                    true => {
+                        std::mem::swap(&mut readings.registers, &mut flight.registers);
+                        0
+                    }
+                    false => {
+                        readings.registers.extend_from_slice(&flight.registers);
+                        readings.registers.len() - flight.registers.len()
+                    }
+                };
+                let reading = |(seat, robot): (usize, &u32)| {
+                    let from = (from + seat * width) as u32;
+                    let (robot, sensor, to) = (*robot, group.index, from + width as u32);
+                    Reading { robot, sensor, captured, delivered, from, to }
+                };
+                readings.items.extend(group.robots.iter().enumerate().map(reading));
                 group.spare.push(flight.registers);
                 flights += 1;
             }

@@ -319,12 +319,7 @@ impl Host for PlanHost<'_, '_, '_> {
 
     fn ended(&mut self, node: u32, how: Ended) {
         if self.run.env.instant.trace {
-            let result = match how {
-                Ended::With(Status::Success) => "success",
-                Ended::With(_) => "failure",
-                Ended::Halted => "halted",
-            };
-            self.run.env.log.items.push(Item::Node { node, result });
+            self.run.env.log.items.push(Item::Node { node, how });
         }
     }
 }

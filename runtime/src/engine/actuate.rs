@@ -113,6 +113,18 @@ impl Actuators {
         Ok(a)
     }
 
+    /// Whether these are the actuators of the same robots.
+    pub fn fits(&self, other: &Actuators) -> bool {
+        let shape = |c: &Channel| (c.robot, c.number, c.proposals, c.commands, c.lifetime);
+        let known = |c: &u32| (*c as usize) < self.channels.len();
+        self.first == other.first
+            && self.channels.iter().map(shape).eq(other.channels.iter().map(shape))
+            && self.proposals.len() == other.proposals.len()
+            && self.commands.len() == other.commands.len()
+            && self.holds == other.holds
+            && self.touched.iter().chain(self.checks.values().flatten()).all(known)
+    }
+
     /// A source proposes.
     #[expect(clippy::too_many_arguments, reason = "each is another side of the one proposal")]
     pub fn propose(

@@ -41,7 +41,7 @@ struct Stamp {
 
 /// What a board keeps.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-struct Kept {
+pub(crate) struct Kept {
     /// Messages sent so far, a sender.
     sent: Vec<u64>,
     /// A ring of messages for each sender.
@@ -128,6 +128,21 @@ impl Board {
             built: None,
             placed: truth && crowded,
         }
+    }
+
+    /// What it keeps now.
+    pub fn kept(&self) -> Kept {
+        self.kept.clone()
+    }
+
+    /// Takes up what the same board kept; false when it did not.
+    pub fn resume(&mut self, kept: Kept) -> bool {
+        let shape = |k: &Kept| (k.sent.len(), k.stamps.len(), k.registers.len());
+        let fits = shape(&kept) == shape(&self.kept);
+        if fits {
+            (self.kept, self.built) = (kept, None);
+        }
+        fits
     }
 
     /// Whether it asks where robots are.
@@ -217,8 +232,16 @@ impl Board {
         let capacity = (out.len().saturating_sub(1) / width).min(self.channel.capacity);
         let (mut found, by_distance) = if self.placed {
             let range = self.channel.range.unwrap_or(f64::INFINITY);
-            let mut listener =
-                Listener { board: self, now, receiver, place, square: range * range, capacity, near, found: 0 };
+            let mut listener = Listener {
+                board: self,
+                now,
+                receiver,
+                place,
+                square: range * range,
+                capacity,
+                near,
+                found: 0,
+            };
             self.grid.around(place, range, &mut listener);
             let found = listener.found;
             (found, found > capacity)
@@ -243,8 +266,11 @@ impl Board {
         let (items, rest) = items.split_at_mut(found.len() * width);
         rest.fill(0.0);
         for (i, f) in found.iter().enumerate() {
-            let i =
-                if sorted { i } else { found.iter().map(|g| usize::from(g.sender < f.sender)).sum::<usize>() };
+            let i = if sorted {
+                i
+            } else {
+                found.iter().map(|g| usize::from(g.sender < f.sender)).sum::<usize>()
+            };
             let at = f.slot as usize * self.channel.width;
             let message = &self.kept.registers[at..at + self.channel.width];
             copy_registers(message, &mut items[i * width..i * width + self.channel.width]);
@@ -337,8 +363,7 @@ impl Visitor for Listener<'_> {
 
     fn enough(&self, seen: f64) -> bool {
         let found = &self.near.0[..self.found];
-        found.len() > self.capacity
-            && found.iter().filter(|f| f.far <= seen * seen).count() > self.capacity
+        found.len() > self.capacity && found.iter().filter(|f| f.far <= seen * seen).count() > self.capacity
     }
 }
 

@@ -201,12 +201,12 @@ impl Engine<'_> {
                 };
                 Event::Transition { robot, agent, from: name(*from), to: name(*to), unit }
             }
-            Item::Node { node, result } => {
+            Item::Node { node, how } => {
                 let label = match &code.units[info.unit as usize].kind {
                     soifra_graph::UnitKind::Plan { nodes, .. } => nodes[*node as usize].label.clone(),
                     _ => String::new(),
                 };
-                Event::Node { robot, agent, unit, node: *node, label, result: (*result).to_string() }
+                Event::Node { robot, agent, unit, node: *node, label, result: how.word().to_string() }
             }
             Item::State { state, registers } => {
                 let state = code.states[*state as usize].name.to_string();

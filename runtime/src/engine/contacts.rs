@@ -11,7 +11,7 @@ pub(crate) struct Contacts {
     /// Contacts each robot took part in.
     pub of_robot: Vec<u32>,
     /// Contacts each robot is in now.
-    touching: Vec<u32>,
+    pub touching: Vec<u32>,
     /// Robots whose contact began at the instant that is being judged.
     began: Vec<u32>,
     lasting: u32,
@@ -33,6 +33,11 @@ const TOLD: usize = 20;
 impl Contacts {
     pub fn new(robots: usize) -> Self {
         Contacts { of_robot: vec![0; robots], touching: vec![0; robots], ..Contacts::default() }
+    }
+
+    /// Whether these are contacts of as many robots.
+    pub fn fits(&self, other: &Contacts) -> bool {
+        (self.of_robot.len(), self.touching.len()) == (other.of_robot.len(), other.touching.len())
     }
 
     /// A contact begins.

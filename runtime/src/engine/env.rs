@@ -123,17 +123,10 @@ impl Env for AgentEnv<'_, '_> {
 
     fn effect(&mut self, effect: Effect<'_>) -> Result<(), FaultKind> {
         let trace = self.instant.trace;
-        // Each kind is pushed for itself: an item that is first made and then moved is slow to move.
         let log = &mut *self.log;
         match effect {
-            Effect::Command { port, registers } => {
-                let registers = log.keep(registers);
-                log.items.push(Item::Command { port, registers });
-            }
-            Effect::Publish { topic, registers } => {
-                let registers = log.keep(registers);
-                log.items.push(Item::Publish { topic, registers });
-            }
+            Effect::Command { port, registers } => log.command(port, registers),
+            Effect::Publish { topic, registers } => log.publish(topic, registers),
             Effect::Tell { performative, to, content, registers } => {
                 let (performative, to, content) = (performative.into(), to.into(), content.clone());
                 let registers = log.keep(registers);

@@ -78,6 +78,13 @@ impl Goals {
         g
     }
 
+    /// Whether these are counts of as many goals and robots.
+    pub fn fits(&self, other: &Goals) -> bool {
+        let all = |counts: &[Count]| counts.iter().map(|c| c.all).collect::<Vec<_>>();
+        let shape = |g: &Goals| (all(&g.goals), all(&g.robots), g.reached.len(), g.traced.len());
+        shape(self) == shape(other)
+    }
+
     /// A sub-goal of a robot changes its status.
     pub fn change(&mut self, now: Time, goal: u32, robot: u32, before: u8, after: u8) {
         self.goals[goal as usize].change(before, after);

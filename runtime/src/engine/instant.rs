@@ -35,6 +35,7 @@ impl Engine<'_> {
                 break End { outcome: Outcome::Failed, reason: "nothing is left to happen".into() };
             };
             if next > self.now {
+                self.snapshot();
                 self.events = 0;
                 self.now = next;
             }
@@ -43,7 +44,7 @@ impl Engine<'_> {
     }
 
     /// The next instant.
-    fn next(&self) -> Option<Time> {
+    pub(super) fn next(&self) -> Option<Time> {
         let all = [self.platform.next_due(), self.queue.next(), self.actuators.next()];
         let next = all.into_iter().flatten().filter(|t| *t < Time::MAX).min()?;
         Some(self.limit.map_or(next, |l| l.min(next)))
@@ -367,7 +368,11 @@ impl Engine<'_> {
             if hears.is_empty() {
                 continue;
             }
-            topics.extend(hears.iter().filter(|t| !topics.contains(t)).copied().collect::<Vec<_>>());
+            for t in hears {
+                if !topics.contains(t) {
+                    topics.push(*t);
+                }
+            }
             if robots.last() != Some(&who.robot) {
                 robots.push(who.robot);
             }

@@ -1,10 +1,12 @@
 //! What an activation did, kept until it is committed in the deterministic order.
 
+use crate::nodes::Ended;
+use serde::{Deserialize, Serialize};
 use soifra_graph::{Name, Span};
 use std::ops::Range;
 
 /// Something an activation did, in order. Ranges are registers of the log.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) enum Item {
     Command {
         port: u32,
@@ -37,7 +39,7 @@ pub(crate) enum Item {
     },
     Node {
         node: u32,
-        result: &'static str,
+        how: Ended,
     },
     State {
         state: u32,
@@ -48,7 +50,7 @@ pub(crate) enum Item {
 }
 
 /// Content told to another agent.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Told {
     pub performative: Name,
     pub to: Name,
@@ -57,7 +59,7 @@ pub(crate) struct Told {
 }
 
 /// The items of consecutive activations.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Log {
     pub items: Vec<Item>,
     pub registers: Vec<f64>,
@@ -75,6 +77,22 @@ impl Log {
             _ => self.registers.extend_from_slice(registers),
         }
         from..self.registers.len() as u32
+    }
+
+    // A function for each of the frequent items: one that is first made and then moved is slow to move.
+
+    /// Keeps a command.
+    #[inline(never)]
+    pub fn command(&mut self, port: u32, registers: &[f64]) {
+        let registers = self.keep(registers);
+        self.items.push(Item::Command { port, registers });
+    }
+
+    /// Keeps a message.
+    #[inline(never)]
+    pub fn publish(&mut self, topic: u32, registers: &[f64]) {
+        let registers = self.keep(registers);
+        self.items.push(Item::Publish { topic, registers });
     }
 
     /// Registers of an item.

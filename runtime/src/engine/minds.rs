@@ -1,8 +1,11 @@
 //! What agents keep between activations, flat: states, machines, plans, sub-goals, randomness. Views of
 //! it can be split between threads, because no activation touches the mind of another agent.
 
-use super::cast::Cast;
-use crate::Time;
+use super::cast::{Cast, UnitInfo};
+use crate::{
+    Time,
+    mission::{Mission, code::KindCode},
+};
 use serde::{Deserialize, Serialize};
 
 /// A machine, or the plan of a sub-goal that has ended.
@@ -98,6 +101,22 @@ impl Minds {
             subgoals: vec![ACTIVE; cast.subgoals],
             drawn: vec![0; cast.instances.len()],
         }
+    }
+
+    /// Whether these are minds of the same agents.
+    pub fn fits(&self, other: &Minds, mission: &Mission, cast: &Cast) -> bool {
+        let shape = |m: &Minds| {
+            let known = (m.states.len(), m.positions.len(), m.subgoals.len());
+            (known, m.status.len(), m.slots.len(), m.drawn.len())
+        };
+        let is_state = |(p, unit): (&Position, &UnitInfo)| {
+            let agent = cast.instances[unit.instance as usize].agent;
+            match &mission.agents[agent as usize].units[unit.unit as usize].kind {
+                KindCode::Machine { states, .. } => (p.state as usize) < states.len(),
+                _ => true,
+            }
+        };
+        shape(self) == shape(other) && self.positions.iter().zip(&cast.units).all(is_state)
     }
 
     /// A view of all.

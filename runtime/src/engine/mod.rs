@@ -29,6 +29,7 @@ mod regions;
 pub mod report;
 mod senses;
 mod setup;
+pub(crate) mod snapshot;
 mod verdict;
 
 use crate::{Mission, Platform, Readings, Report, Scene, Time};
@@ -49,6 +50,7 @@ use regions::Regions;
 pub use report::{Outcome, RunReport};
 use senses::Senses;
 use serde::{Deserialize, Serialize};
+pub use snapshot::Snapshot;
 use soifra_graph::Texts;
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 

@@ -48,6 +48,11 @@ impl Mail {
         letter
     }
 
+    /// Whether all are mailboxes of the first `units` units.
+    pub fn fits(&self, units: usize) -> bool {
+        self.0.keys().all(|u| (*u as usize) < units)
+    }
+
     /// Whether letters wait.
     pub fn waits(&self, unit: u32) -> bool {
         self.0.contains_key(&unit)

@@ -1,7 +1,12 @@
 //! What will happen: periodic releases, and what was put off to an instant.
 
-use super::{cast::Timer, log::Log, post::Letter};
+use super::{
+    cast::Timer,
+    log::{Item, Log},
+    post::Letter,
+};
 use crate::Time;
+use serde::{Deserialize, Serialize};
 use std::{
     cmp::Reverse,
     collections::{BTreeMap, BinaryHeap},
@@ -9,7 +14,7 @@ use std::{
 };
 
 /// Something put off.
-#[derive(Debug)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) enum Scheduled {
     /// A letter arrives at units.
     Deliver { letter: Arc<Letter>, to: Vec<u32> },
@@ -28,7 +33,53 @@ pub(crate) struct Queue {
     count: u64,
 }
 
+/// What of the future changes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Agenda {
+    /// When each timer is due next.
+    timers: Vec<Time>,
+    /// What was put off, with when and its number.
+    scheduled: Vec<(Time, u64, Scheduled)>,
+    count: u64,
+}
+
 impl Queue {
+    /// The future as it is now.
+    pub fn agenda(&self) -> Agenda {
+        let scheduled = self.scheduled.iter().map(|((t, n), what)| (*t, *n, what.clone()));
+        Agenda {
+            timers: self.timers.iter().map(|t| t.next).collect(),
+            scheduled: scheduled.collect(),
+            count: self.count,
+        }
+    }
+
+    /// Takes up the future of a run of the same mission with `units` units; false when it is none.
+    pub fn resume(&mut self, agenda: Agenda, units: usize) -> bool {
+        let known = |u: &u32| (*u as usize) < units;
+        let fits = agenda.timers.len() == self.timers.len()
+            && agenda.scheduled.iter().all(|(_, n, what)| {
+                *n < agenda.count
+                    && match what {
+                        Scheduled::Deliver { to, .. } => to.iter().all(known),
+                        Scheduled::Outputs { unit, log, .. } => {
+                            known(unit) && log.items.iter().all(Item::is_output)
+                        }
+                        Scheduled::Wake(unit) => known(unit),
+                    }
+            });
+        if !fits {
+            return false;
+        }
+        for (timer, next) in self.timers.iter_mut().zip(agenda.timers) {
+            timer.next = next;
+        }
+        self.due = self.timers.iter().enumerate().map(|(i, t)| Reverse((t.next, i as u32))).collect();
+        self.scheduled = agenda.scheduled.into_iter().map(|(t, n, what)| ((t, n), what)).collect();
+        self.count = agenda.count;
+        true
+    }
+
     pub fn new(timers: Vec<Timer>) -> Self {
         let due = timers.iter().enumerate().map(|(i, t)| Reverse((t.next, i as u32))).collect();
         Queue { timers, due, ..Queue::default() }

@@ -1,5 +1,6 @@
 //! Numbers records and hands them to the sink.
 
+use super::Snapshot;
 use crate::{Event, Record, Time, TraceSink};
 
 /// The way into the trace.
@@ -31,6 +32,26 @@ impl<'m> Recorder<'m> {
         event: impl FnOnce() -> Event,
     ) -> Option<u64> {
         if self.enabled { Some(self.write(t, causes, event)) } else { None }
+    }
+
+    /// Whether the trace wants a snapshot after what happened at `now`.
+    pub fn wants_snapshot(&mut self, now: Time) -> bool {
+        self.enabled && self.failed.is_none() && self.sink.wants_snapshot(now)
+    }
+
+    /// Takes a snapshot.
+    pub fn snapshot(&mut self, snapshot: &Snapshot) {
+        self.failed = self.sink.snapshot(snapshot).err();
+    }
+
+    /// Number of the next record.
+    pub fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// Goes on with record `next`.
+    pub fn go_on(&mut self, next: u64) {
+        self.next = next;
     }
 
     #[inline(never)]

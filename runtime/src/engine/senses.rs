@@ -57,6 +57,14 @@ impl Senses {
         s
     }
 
+    /// Whether these are readings of the same sensors.
+    pub fn fits(&self, other: &Senses) -> bool {
+        let place = |s: &Slot| (s.at, s.width, s.grace);
+        self.first == other.first
+            && self.registers.len() == other.registers.len()
+            && self.slots.iter().map(place).eq(other.slots.iter().map(place))
+    }
+
     fn slot(&self, robot: u32, sensor: u32) -> Option<usize> {
         let from = *self.first.get(robot as usize)?;
         let to = *self.first.get(robot as usize + 1)?;

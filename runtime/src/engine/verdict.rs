@@ -10,6 +10,7 @@ use crate::{
         code::{Condition, ExpectKindCode},
         margin::BOOLEAN,
     },
+    trace::exact,
 };
 use serde::{Deserialize, Serialize};
 
@@ -27,8 +28,10 @@ pub(crate) struct Track {
     pub held: Option<bool>,
     /// When it was violated first.
     pub violated: Option<Time>,
+    #[serde(with = "exact::optional")]
     margin: Option<f64>,
     /// Until: least margin of the first condition so far.
+    #[serde(with = "exact::number")]
     guard: f64,
     /// Leads to: since when an answer is due.
     pending: Option<Time>,

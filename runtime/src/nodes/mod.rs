@@ -26,9 +26,10 @@ mod wait_until;
 pub use tree::{Act, Code, Kind, MAX_DEPTH, Part, Tree, TreeError};
 
 use crate::Time;
+use serde::{Deserialize, Serialize};
 
 /// What a tick returns; `Idle` is never returned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Status {
     /// Not running.
@@ -42,12 +43,23 @@ pub enum Status {
 }
 
 /// How a node ended, for the trace.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ended {
     /// With this result.
     With(Status),
     /// It was halted while running.
     Halted,
+}
+
+impl Ended {
+    /// In a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Ended::With(Status::Success) => "success",
+            Ended::With(_) => "failure",
+            Ended::Halted => "halted",
+        }
+    }
 }
 
 /// What a tree needs of its surroundings to evaluate the code of its leaves.

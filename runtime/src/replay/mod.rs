@@ -8,8 +8,8 @@ mod recorded;
 mod tape;
 
 use crate::{
-    Engine, Mission, Platform, Readings, Record, Report, RunReport, Scene, Settings, Time, TraceSink,
-    WorldTruth,
+    Engine, Mission, Platform, Readings, Record, Report, RunReport, Scene, Settings, Snapshot, Time,
+    TraceSink, WorldTruth,
 };
 use recorded::Recorded;
 use soifra_graph::Diagnostic;
@@ -24,6 +24,8 @@ use tape::Tape;
 pub enum ReplayError {
     /// The run cannot be prepared.
     Start(Diagnostic),
+    /// The snapshot is not one of this mission with these settings.
+    Snapshot,
     /// A record differs.
     Difference(Box<Difference>),
 }
@@ -43,6 +45,7 @@ impl fmt::Display for ReplayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             ReplayError::Start(d) => f.write_str(&d.title),
+            ReplayError::Snapshot => f.write_str("the snapshot is one of another run"),
             ReplayError::Difference(d) => write!(f, "record {} differs", d.record),
         }
     }
@@ -64,7 +67,25 @@ pub fn verify(
     let stop = AtomicBool::new(false);
     let tape = Tape::new(records.into_iter());
     let mut platform = Recorded::new(&tape, scene.robots.len(), &stop);
-    compare(mission, settings, &scene, &mut platform, &tape, &stop)
+    compare(mission, settings, &scene, &mut platform, &tape, &stop, None)
+}
+
+/// As [`verify`], from a snapshot on; records before it are passed over.
+///
+/// # Errors
+/// The first record that differs; [`ReplayError::Snapshot`] for a snapshot of another mission.
+pub fn verify_from(
+    mission: &Mission,
+    settings: &Settings,
+    snapshot: Snapshot,
+    records: impl IntoIterator<Item = Record>,
+) -> Result<RunReport, ReplayError> {
+    let scene = mission.scene(settings).map_err(ReplayError::Start)?;
+    let stop = AtomicBool::new(false);
+    let next = snapshot.next;
+    let tape = Tape::new(records.into_iter().skip_while(move |r| r.n < next));
+    let mut platform = Recorded::resumed(&tape, &snapshot, &stop);
+    compare(mission, settings, &scene, &mut platform, &tape, &stop, Some(snapshot))
 }
 
 /// Runs on a platform again, which was made from the same scene, and compares everything.
@@ -81,7 +102,7 @@ pub fn resimulate(
     let stop = AtomicBool::new(false);
     let tape = Tape::new(records.into_iter());
     let mut platform = Watched { platform, tape: &tape, stop: &stop };
-    compare(mission, settings, scene, &mut platform, &tape, &stop)
+    compare(mission, settings, scene, &mut platform, &tape, &stop, None)
 }
 
 fn compare(
@@ -91,10 +112,14 @@ fn compare(
     platform: &mut dyn Platform,
     tape: &Tape<'_>,
     stop: &AtomicBool,
+    snapshot: Option<Snapshot>,
 ) -> Result<RunReport, ReplayError> {
     let mut sink = Compare { tape, difference: None };
-    let engine =
+    let mut engine =
         Engine::new(mission, settings, scene, platform, &mut sink, stop).map_err(ReplayError::Start)?;
+    if snapshot.is_some_and(|s| !engine.resume(s)) {
+        return Err(ReplayError::Snapshot);
+    }
     let report = engine.run();
     if let Some(d) = sink.difference {
         return Err(ReplayError::Difference(d));

@@ -1,12 +1,15 @@
 //! A platform that hands over what another one handed over in a recorded run.
 
 use super::tape::Tape;
-use crate::{Event, Platform, Readings, Report, Time, WorldTruth, engine::report::LOST};
+use crate::{Event, Platform, Readings, Report, Snapshot, Time, WorldTruth, engine::report::LOST};
 use soifra_graph::component::MODELS;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The most names of safe actions that are not those of a model.
 const MOST_NAMES: usize = 64;
+
+/// A robot of which no pose has been recorded.
+const IDENTITY: [f64; 7] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
 /// A recorded platform.
 pub(super) struct Recorded<'t, 'r> {
@@ -32,11 +35,25 @@ impl<'t, 'r> Recorded<'t, 'r> {
     pub(super) fn new(tape: &'t Tape<'r>, robots: usize, stop: &'t AtomicBool) -> Self {
         tape.pull(Time::ZERO);
         let truth = tape.has_poses().then(|| Truth {
-            poses: vec![[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]; robots],
+            poses: vec![IDENTITY; robots],
             paths: vec![0.0; robots],
             collisions: vec![0; robots],
             touching: vec![0; robots],
             ..Truth::default()
+        });
+        Recorded { tape, stop, truth, names: Vec::new() }
+    }
+
+    /// The rest of a run, from a snapshot on, of which the tape has the records after it.
+    pub(super) fn resumed(tape: &'t Tape<'r>, snapshot: &Snapshot, stop: &'t AtomicBool) -> Self {
+        tape.pull(snapshot.t);
+        let truth = snapshot.truth().map(|t| Truth {
+            poses: t.poses.iter().map(|p| p.map_or(IDENTITY, |p| p.0)).collect(),
+            paths: t.poses.iter().map(|p| p.map_or(0.0, |p| p.1)).collect(),
+            movers: t.movers.to_vec(),
+            collisions: t.contacts.of_robot.clone(),
+            touching: t.contacts.touching.clone(),
+            total: t.contacts.total,
         });
         Recorded { tape, stop, truth, names: Vec::new() }
     }

@@ -1,9 +1,11 @@
 //! What is recorded of a run. Where it goes is the sink's business.
 
-mod exact;
+pub(crate) mod exact;
 pub mod record;
 
 pub use record::{Event, Record};
+
+use crate::{Snapshot, Time};
 
 /// Takes the records of a run, in order.
 pub trait TraceSink {
@@ -14,6 +16,16 @@ pub trait TraceSink {
 
     /// Takes one record. An error means that the trace stops being writable: the run is aborted.
     fn record(&mut self, record: &Record) -> Result<(), String>;
+
+    /// Whether a snapshot is wanted of the run after what happened at `now`.
+    fn wants_snapshot(&mut self, _now: Time) -> bool {
+        false
+    }
+
+    /// Takes a snapshot that was wanted. An error is as in [`TraceSink::record`].
+    fn snapshot(&mut self, _snapshot: &Snapshot) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 /// Takes nothing.

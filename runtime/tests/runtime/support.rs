@@ -3,7 +3,8 @@
 use soifra_graph::{Graph, Value};
 use soifra_lang::{CheckOptions, Loader, check};
 use soifra_runtime::{
-    Engine, Event, Mission, Platform, Readings, Record, Report, RunReport, Scene, Settings, Time, WorldTruth,
+    Engine, Event, Mission, Platform, Readings, Record, Report, RunReport, Scene, Settings, Snapshot, Time,
+    TraceSink, WorldTruth, replay, scene::RobotScene,
 };
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
@@ -63,7 +64,7 @@ pub fn with(params: &[(&str, Value)]) -> Settings {
     Settings { params: params.iter().map(|(n, v)| ((*n).to_string(), v.clone())).collect(), ..settings() }
 }
 
-/// A world in which carts keep their velocity and pawns walk their strides at once. Readings of poses
+/// A world in which carts keep their velocity and pawns have walked their strides by the next poll. Readings of poses
 /// come at multiples of the period of their sensor, unless they are switched off.
 pub struct World {
     now: Time,
@@ -83,6 +84,8 @@ pub struct World {
 struct Body {
     pose: [f64; 7],
     velocity: [f64; 2],
+    /// A stride that is to be walked: along x, along y, length.
+    stride: [f64; 3],
     path: f64,
 }
 
@@ -98,7 +101,8 @@ struct Eye {
 
 impl World {
     pub fn new(scene: &Scene) -> Self {
-        let bodies = scene.robots.iter().map(|r| Body { pose: r.start, velocity: [0.0; 2], path: 0.0 });
+        let body = |r: &RobotScene| Body { pose: r.start, velocity: [0.0; 2], stride: [0.0; 3], path: 0.0 };
+        let bodies = scene.robots.iter().map(body);
         let mut sensors = Vec::new();
         for (r, robot) in scene.robots.iter().enumerate() {
             for (s, part) in scene.platforms[robot.platform as usize].of_role("sensor").enumerate() {
@@ -134,6 +138,10 @@ impl Platform for World {
     fn poll(&mut self, now: Time, readings: &mut Readings, reports: &mut Vec<Report>) {
         let dt = (now - self.now).seconds();
         for b in &mut self.robots {
+            let [x, y, length] = std::mem::take(&mut b.stride);
+            b.pose[0] += x;
+            b.pose[1] += y;
+            b.path += length;
             let v = b.velocity;
             b.pose[0] += v[0] * dt;
             b.pose[1] += v[1] * dt;
@@ -174,9 +182,7 @@ impl Platform for World {
         if command.len() == 2 {
             let (heading, length) = (command[0], command[1]);
             let (sin, cos) = quarter_turns(heading);
-            body.pose[0] += length * cos;
-            body.pose[1] += length * sin;
-            body.path += length;
+            body.stride = [length * cos, length * sin, length];
         } else if actuator == 0 {
             body.velocity = [command[0], command[1]];
         }
@@ -240,11 +246,49 @@ pub fn run_with(mission: &Mission, settings: &Settings, prepare: impl FnOnce(&mu
     let scene = mission.scene(settings).unwrap_or_else(|e| panic!("{e:?}"));
     let mut world = World::new(&scene);
     prepare(&mut world);
-    let mut records: Vec<Record> = Vec::new();
+    let mut sink = Watcher::default();
     let stop = AtomicBool::new(false);
-    let engine = Engine::new(mission, settings, &scene, &mut world, &mut records, &stop);
+    let engine = Engine::new(mission, settings, &scene, &mut world, &mut sink, &stop);
     let report = engine.unwrap_or_else(|e| panic!("{e:?}")).run();
+    let Watcher { records, snapshots, .. } = sink;
+    for text in snapshots {
+        goes_on(mission, settings, &text, &records, &report);
+    }
     Ran { report, records, world }
+}
+
+/// A replay from a snapshot gives the same records and the same report.
+fn goes_on(mission: &Mission, settings: &Settings, text: &str, records: &[Record], report: &RunReport) {
+    let snapshot: Snapshot = serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text}"));
+    let t = snapshot.t;
+    match replay::verify_from(mission, settings, snapshot, records.iter().cloned()) {
+        Ok(again) => assert_eq!(&again, report, "from {t:?}"),
+        Err(e) => panic!("from {t:?}: {e:?}\n{text}"),
+    }
+}
+
+/// Keeps records, and a snapshot of the 1st, 2nd, 4th, 8th … instant at whose end time goes on.
+#[derive(Default)]
+struct Watcher {
+    records: Vec<Record>,
+    snapshots: Vec<String>,
+    instants: u32,
+}
+
+impl TraceSink for Watcher {
+    fn record(&mut self, record: &Record) -> Result<(), String> {
+        self.records.record(record)
+    }
+
+    fn wants_snapshot(&mut self, _: Time) -> bool {
+        self.instants += 1;
+        self.instants.is_power_of_two()
+    }
+
+    fn snapshot(&mut self, snapshot: &Snapshot) -> Result<(), String> {
+        self.snapshots.push(serde_json::to_string(snapshot).map_err(|e| e.to_string())?);
+        Ok(())
+    }
 }
 
 impl Ran {

@@ -109,6 +109,9 @@ pub(super) enum Instr {
     Norm { d: u32, a: u32 },
     Distance { d: u32, a: u32, b: u32 },
 
+    /// Turns a vector about z; the constant `k` and the one behind it are cosine and sine.
+    TurnK { d: u32, a: u32, k: u32 },
+
     Yaw { d: u32, a: u32 },
     Roll { d: u32, a: u32 },
     Pitch { d: u32, a: u32 },

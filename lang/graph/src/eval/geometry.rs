@@ -43,8 +43,18 @@ pub(super) fn polar(length: f64, heading: f64) -> [f64; 3] {
 }
 
 /// `v` turned about z.
-pub(super) fn turn([x, y, z]: [f64; 3], by: f64) -> [f64; 3] {
+pub(super) fn turn(v: [f64; 3], by: f64) -> [f64; 3] {
+    turned(v, turn_of(by))
+}
+
+/// Cosine and sine of a turn.
+pub(super) fn turn_of(by: f64) -> [f64; 2] {
     let (s, c) = libm::sincos(by);
+    [c, s]
+}
+
+/// `v` turned about z by a turn of which cosine and sine are given.
+pub(super) fn turned([x, y, z]: [f64; 3], [c, s]: [f64; 2]) -> [f64; 3] {
     [x * c - y * s, x * s + y * c, z]
 }
 

@@ -1,8 +1,8 @@
 //! What the machine does with lists and with registers in any space. `None` stands for registers that
 //! are not there.
 
-use super::{Memory, copy_registers};
 use super::code::{ListRef, Program, Space};
+use super::{Memory, copy_registers};
 use crate::reason;
 
 /// As [`copy_registers`], within the frame.
@@ -221,7 +221,13 @@ impl Program {
         memory: &Memory<'_>,
     ) -> Option<()> {
         if index >= 0.0 && index < self.count(l, frame, memory)? as f64 {
-            return self.found(l, Program::first_place(l) + index as usize * l.width as usize, frame, d, memory);
+            return self.found(
+                l,
+                Program::first_place(l) + index as usize * l.width as usize,
+                frame,
+                d,
+                memory,
+            );
         }
         *frame.get_mut(d)? = reason::tag(reason::NO_SUCH_ITEM);
         Some(())

@@ -256,6 +256,10 @@ impl Program {
                     }
                     set_vector!(d, v.map(|x| x / by))
                 }
+                Instr::TurnK { d, a, k } => {
+                    let turn = some!(array::<2>(constants, k));
+                    set_vector!(d, g::turned(vector!(a), turn));
+                }
                 Instr::Dot { d, a, b } => {
                     let ([ax, ay, az], [bx, by, bz]) = (vector!(a), vector!(b));
                     finite!(d, ax * bx + ay * by + az * bz)
@@ -325,7 +329,8 @@ impl Program {
                         rest = from(to as usize);
                     }
                 }
-                Instr::Now { .. } | Instr::Own { .. } | Instr::Reading { .. } | Instr::Heard { .. } => {
+                Instr::Now { d } => finite!(d, try_!(m.env.now())),
+                Instr::Own { .. } | Instr::Reading { .. } | Instr::Heard { .. } => {
                     try_!(self.question(instr, frame, m));
                 }
                 Instr::Do { effect, a } => {

@@ -188,9 +188,13 @@ impl Program {
 
     /// What is asked of the surroundings.
     #[inline(never)]
-    pub(super) fn question(&self, instr: &Instr, frame: &mut [f64], m: &mut Machine<'_, '_>) -> Result<(), FaultKind> {
+    pub(super) fn question(
+        &self,
+        instr: &Instr,
+        frame: &mut [f64],
+        m: &mut Machine<'_, '_>,
+    ) -> Result<(), FaultKind> {
         match *instr {
-            Instr::Now { d } => finite(frame, d, m.env.now()?),
             Instr::Steps { d } => finite(frame, d, m.env.steps()?),
             Instr::Elapsed { d } => finite(frame, d, m.env.elapsed()?),
             Instr::Own { which, d, n } => m.env.own(which, out(frame, d, n)?),

@@ -235,7 +235,11 @@ impl Compiler<'_> {
             (Binary::Mul, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => scale(n, d, a, b),
             (Binary::Mul, s, t) if typing::number(s).is_some() && same_layout(t, &e.ty) => scale(n, d, b, a),
             (Binary::Div, t, s) if typing::number(s).is_some() && same_layout(t, &e.ty) => {
-                if n == 3 { Instr::Div3 { d, a, b } } else { Instr::DivN { n, d, a, b } }
+                if n == 3 {
+                    Instr::Div3 { d, a, b }
+                } else {
+                    Instr::DivN { n, d, a, b }
+                }
             }
             _ => return error(e.span, format!("{} and {} do not go together here", l.ty, r.ty)),
         };

@@ -3,7 +3,7 @@
 use super::emit::error;
 use super::expr::{Operand, arguments, gives};
 use super::{Compiled, Compiler, Place};
-use crate::eval::code::Instr;
+use crate::eval::{code::Instr, geometry};
 use crate::{Expr, Function, Type, pattern::Bindings};
 
 impl Compiler<'_> {
@@ -87,6 +87,30 @@ impl Compiler<'_> {
                 self.emit(Instr::Function2 { f, d, a, b }, e.span);
                 Ok(Place::frame(d))
             }
+            F::Rotate => {
+                let [v, by] = arguments(e)?;
+                self.check_call(e, f)?;
+                let d = self.dest(dest, 3, e.span)?;
+                let top = self.body.top;
+                let v = self.registers(v)?;
+                let instr = match self.operand(by)? {
+                    Operand::Constant(k) => {
+                        let angle = self.program.constants.get(k as usize).copied().unwrap_or_default();
+                        let k = self.program.constants.len() as u32;
+                        self.program.constants.extend(geometry::turn_of(angle));
+                        Instr::TurnK { d, a: v, k }
+                    }
+                    Operand::Register(b) => {
+                        let a = self.alloc(4, e.span)?;
+                        self.copy(Place::frame(v), a, 3, e.span);
+                        self.copy(Place::frame(b), a + 3, 1, e.span);
+                        Instr::FunctionN { f, d, a }
+                    }
+                };
+                self.body.top = top;
+                self.emit(instr, e.span);
+                Ok(Place::frame(d))
+            }
             F::Twist => {
                 let [forward, turn, left, up] = arguments(e)?;
                 self.check_call(e, f)?;
@@ -104,7 +128,6 @@ impl Compiler<'_> {
             | F::HeadingOf
             | F::Polar
             | F::Unit
-            | F::Rotate
             | F::PoseAt
             | F::Bearing
             | F::Place
