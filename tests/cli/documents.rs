@@ -1,7 +1,8 @@
 //! `docs/commands.md` tells every field of the JSON documents, and no other.
 
-use crate::support::{file, folder, json, root, soifra};
+use crate::support::{code, file, folder, json, root, soifra};
 use serde_json::Value;
+use soifra::trace_file::{Writer, read};
 use std::collections::BTreeSet;
 
 /// Fields of a table of the page.
@@ -72,6 +73,23 @@ fn every_field_of_a_sweep_is_told() {
     let o = soifra(&["sweep", &mission, "--seeds", "2", "--set", "rules=safe", "--format", "json"]);
     let opaque = ["summary", "graph_digests", "runs[].metrics"];
     assert_eq!(found(&json(&o), &opaque, &["groups[].summary.", "plan.sets[", "runs[].set["]), told("sweep"));
+}
+
+#[test]
+fn every_field_of_a_replay_is_told() {
+    let trace = folder("documents-replay").join("run.mcap");
+    let path = trace.to_string_lossy().into_owned();
+    let mission = root().join("missions/khepera/sim1.soi").to_string_lossy().into_owned();
+    assert_eq!(code(&soifra(&["run", &mission, "--trace", &path])), 0);
+    // Another seed in the header makes the run another one.
+    let mut recorded = read(&trace).expect("a trace");
+    recorded.header.scene.seed += 1;
+    let mut writer = Writer::create(&trace, &recorded.header).expect("a file");
+    recorded.records.iter().for_each(|r| writer.write(r).expect("written"));
+    writer.finish().expect("written");
+    let o = soifra(&["replay", &path, "--format", "json"]);
+    let leave = ["difference.recorded.", "difference.replayed."];
+    assert_eq!(found(&json(&o), &[], &leave), told("replay"));
 }
 
 #[test]

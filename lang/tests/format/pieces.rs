@@ -58,8 +58,9 @@ fn length(at: &str, before: &str) -> usize {
         return run(at, &|c| word(c) || c == '.');
     }
     // The inverse of a unit, in a type.
-    if before == "<" && at.starts_with("1/") {
-        return at.find('>').unwrap_or(at.len());
+    let inverse = run(at, &|c| word(c) || c == '/' || c == '^');
+    if at.starts_with("1/") && at[inverse..].starts_with('>') {
+        return inverse;
     }
     if first.is_ascii_digit() {
         let whole = run(at, &|c| c.is_ascii_digit() || c == '_');
