@@ -62,7 +62,7 @@ fn circle(criterion: &mut criterion::Criterion) {
     let what = format!("makespan {} s, that of dodgy_2d {} s", makespans.0, makespans.1);
     support::verdict("swarm_makespan", &what, makespans.0 / makespans.1, Some(2.0));
     let what = "time for a step of a robot to that of dodgy_2d";
-    support::verdict("swarm_rate", what, support::ratio(9, ours, theirs), Some(1.0));
+    support::verdict("swarm_rate", what, support::ratio(25, ours, theirs), Some(1.0));
     let ratio = support::ratio(5, traced, theirs);
     support::verdict("swarm_rate_traced", &format!("{what}, trace on"), ratio, None);
 }

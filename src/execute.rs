@@ -55,6 +55,16 @@ impl<'m> Prepared<'m> {
         Ok(engine.map_err(|d| refuse(vec![d], sources()))?.run())
     }
 
+    /// Refuses a run that cannot start.
+    fn starts(&self) -> Result<(), Refusal> {
+        let mut simulator = Simulator::new(&self.scene).map_err(|why| self.not_simulated(why))?;
+        let (mut sink, stop) = (NoTrace, AtomicBool::new(false));
+        match Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, &mut sink, &stop) {
+            Ok(_) => Ok(()),
+            Err(d) => Err(refuse(vec![d], self.mission.graph().sources.clone())),
+        }
+    }
+
     /// The scene has a part that the simulator does not take.
     fn not_simulated(&self, why: String) -> Refusal {
         let path = self.mission.graph().sources.first().map_or(String::new(), |s| s.path.clone());
@@ -68,6 +78,8 @@ impl<'m> Prepared<'m> {
         path: &str,
         stop: &AtomicBool,
     ) -> Result<(RunReport, trace_file::Finished), Refusal> {
+        // A run that cannot start leaves no file, and none that was there is emptied.
+        self.starts()?;
         let header = header(self.mission, &self.settings, &self.scene)?;
         let unwritable = |e: std::io::Error| files::unwritable(path, &e);
         files::make_folder(path).map_err(unwritable)?;

@@ -99,6 +99,10 @@ pub trait Platform {
     /// reports since the last poll.
     fn poll(&mut self, now: Time, readings: &mut Readings, reports: &mut Vec<Report>);
 
+    /// Time passes until `now`, and nothing is handed over yet: what is to be computed until then can be
+    /// computed now. Called on the way to an instant that is far ahead.
+    fn advance(&mut self, _now: Time) {}
+
     /// Sends a command to actuator `actuator` (index among the `actuator` components of the robot's
     /// platform). It holds until the next command or until `expires`, when the safe action starts.
     fn send(&mut self, now: Time, robot: u32, actuator: u32, command: &[f64], expires: Time);

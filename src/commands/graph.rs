@@ -40,6 +40,21 @@ impl Arguments {
         if self.form() == Form::Json && self.output.is_none() { Format::Json } else { Format::Human }
     }
 
+    /// Refuses a file whose ending promises something else than what would be in it.
+    fn fits(&self) -> Result<(), Refusal> {
+        let Some(path) = self.output.as_deref().filter(|_| self.format.is_none()) else { return Ok(()) };
+        match Path::new(path).extension().and_then(|e| e.to_str()) {
+            None | Some("mmd" | "mermaid" | "md" | "dot" | "gv" | "svg" | "yaml" | "yml" | "json") => Ok(()),
+            Some(ending) => Err(Refusal::about(
+                path,
+                "S9012",
+                "the file cannot be written",
+                format!("no form of a graph ends in .{ending}"),
+                "end its name in .svg, .mmd, .dot, .yaml or .json, or name the form with `--format`",
+            )),
+        }
+    }
+
     fn form(&self) -> Form {
         let ending = self.output.as_deref().and_then(|p| Path::new(p).extension()?.to_str());
         self.format.unwrap_or(match ending {
@@ -54,6 +69,7 @@ impl Arguments {
 
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
+    a.fits()?;
     let compiled = a.mission.compile()?;
     compiled.findings.print();
     let text = render(&compiled.graph, a.form()).map_err(|e| {

@@ -111,9 +111,15 @@ fn execute(a: &Sweep) -> Result<(Document, Exit), Refusal> {
     for text in &a.sets {
         let (name, values) = compile::split_setting(text)?;
         let values = sweep::values(&values);
-        match sets.iter_mut().find(|(n, _)| *n == name) {
-            Some((_, v)) => v.extend(values),
-            None => sets.push((name, values)),
+        let at = sets.iter().position(|(n, _)| *n == name).unwrap_or_else(|| {
+            sets.push((name, Vec::new()));
+            sets.len() - 1
+        });
+        // A value given twice would make runs count twice.
+        for value in values {
+            if !sets[at].1.contains(&value) {
+                sets[at].1.push(value);
+            }
         }
     }
     let plan = Plan { platforms: a.platform.clone(), sets, seeds };

@@ -33,7 +33,7 @@ impl fmt::Display for TraceError {
             TraceError::Io(e) if e.kind() == io::ErrorKind::IsADirectory => {
                 f.write_str("this is a directory, not a trace")
             }
-            TraceError::Io(e) => write!(f, "the trace cannot be read: {e}"),
+            TraceError::Io(e) => f.write_str(&crate::files::reason(e)),
             TraceError::Empty => {
                 f.write_str("the trace is empty: the run ended before anything was recorded")
             }

@@ -159,6 +159,35 @@ fn a_cut_off_trace_is_verified_as_far_as_it_goes() {
 }
 
 #[test]
+fn a_run_that_cannot_start_leaves_the_trace_that_was_there() {
+    let dir = folder("run_refused");
+    let text = MISSION.replace("edition 1", "edition 1\nparam z: Int = 0");
+    let wrong = text.replacen("  service", "  state share: Number = 1 / z\n  service", 1);
+    assert_ne!(text, wrong);
+    let (path, trace) = (file(&dir, "refused.soi", wrong), file(&dir, "old.mcap", "old"));
+    let o = soifra(&["run", &path, "--trace", &trace]);
+    assert_eq!(code(&o), 2, "{}", stderr(&o));
+    assert_eq!(std::fs::read(&trace).unwrap(), b"old");
+}
+
+#[test]
+fn a_graph_is_not_written_under_a_name_that_promises_a_picture() {
+    let dir = folder("run_graph_png");
+    let png = dir.join("graph.png");
+    let o = soifra(&["graph", &mission(&dir), "-o", &png.to_string_lossy()]);
+    assert_eq!(code(&o), 2, "{}", stderr(&o));
+    assert!(stderr(&o).contains("S9012") && !png.exists());
+}
+
+#[test]
+fn a_value_given_twice_is_swept_once() {
+    let dir = folder("run_sweep_twice");
+    let set = "speed=0.5m/s,1m/s,0.5m/s";
+    let o = soifra(&["sweep", &mission(&dir), "--seeds", "2", "--set", set, "--format", "json"]);
+    assert_eq!(json(&o)["runs"].as_array().map(Vec::len), Some(4), "{}", stderr(&o));
+}
+
+#[test]
 fn plots_are_pictures() {
     let dir = folder("run_plot");
     let path = dir.join("a.mcap").to_string_lossy().into_owned();

@@ -12,6 +12,7 @@ mod form;
 mod goals;
 mod knowledge;
 mod lists;
+mod materials;
 mod placement;
 mod quantifiers;
 mod ranges;
@@ -43,6 +44,7 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(timing::check(graph));
     out.extend(effects::check(graph));
     out.extend(lists::check(graph));
+    out.extend(materials::check(graph));
     out.extend(bounds::check(graph));
     let ranges = ranges::check(graph);
     // Where things stand means nothing while their sizes are impossible.

@@ -182,6 +182,10 @@ impl Platform for Simulator {
         self.schedule.deliver(Time(now), readings);
     }
 
+    fn advance(&mut self, now: Time) {
+        Simulator::advance(self, now.0.max(self.now));
+    }
+
     /// A command of the wrong width, or with a number that is not finite, stops the robot.
     fn send(&mut self, now: Time, robot: u32, actuator: u32, command: &[f64], expires: Time) {
         self.advance(now.0.max(self.now));

@@ -342,7 +342,7 @@ impl Listener<'_> {
 }
 
 impl Visitor for Listener<'_> {
-    #[inline]
+    #[inline(always)]
     fn look(&mut self, sites: &[Site]) {
         let most = self.found + sites.len();
         if self.near.0.len() < most {

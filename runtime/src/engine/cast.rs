@@ -174,6 +174,8 @@ impl Cast {
 
 /// The shortest period, in nanoseconds: a bound on the number of events of a run.
 const SHORTEST_PERIOD: i64 = 1_000;
+/// The longest duration in the timing of a unit, in nanoseconds: twice as long is still an instant.
+const LONGEST: i64 = 900_000_000 * 1_000_000_000;
 
 /// Durations of a unit, and period and first release of a periodic one.
 #[expect(clippy::too_many_arguments, reason = "each is another side of the one unit")]
@@ -191,7 +193,7 @@ fn schedule(
         let Some(block) = block else { return Ok(None) };
         let s = start.run_with(block, &[], arguments)?[0];
         match Time::from_seconds(s) {
-            Some(t) if t.0 >= least => Ok(Some(t)),
+            Some(t) if (least..=LONGEST).contains(&t.0) => Ok(Some(t)),
             _ => Err(Diagnostic::error(START_VALUE, format!("a duration of {s} s is not possible here"))
                 .at(unit.span, "in the timing of this unit")),
         }

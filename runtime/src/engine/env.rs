@@ -13,7 +13,7 @@ use crate::{
     seed::Stream,
 };
 use soifra_graph::{
-    Distribution, Own, Type, Value,
+    Distribution, Name, Own, Type, TypeTable, Value,
     eval::{Effect, Env, FaultKind, copy_registers},
     reason,
 };
@@ -161,13 +161,13 @@ impl AgentEnv<'_, '_> {
     fn note(&self, text: &str, value: Option<(&Type, &[f64])>) -> String {
         let Some((ty, registers)) = value else { return text.to_string() };
         let types = &self.instant.mission.graph.types;
-        let value = show(&Value::from_registers(registers, ty, types, self.instant.texts), ty);
+        let value = show(&Value::from_registers(registers, ty, types, self.instant.texts), ty, types);
         if text.is_empty() { value } else { format!("{text}: {value}") }
     }
 }
 
 /// A value as a remark shows it, in SI units.
-fn show(value: &Value, ty: &Type) -> String {
+fn show(value: &Value, ty: &Type, types: &TypeTable) -> String {
     let list = |items: &[f64]| items.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     match (value, ty) {
         (Value::Bool(b), _) => b.to_string(),
@@ -183,10 +183,15 @@ fn show(value: &Value, ty: &Type) -> String {
         (Value::Pose(v), _) => format!("({})", list(v)),
         (Value::Twist(v), _) => format!("({})", list(v)),
         (Value::Matrix(v), _) => format!("[{}]", list(v)),
-        (Value::Some(v), Type::Option(t)) => show(v, t),
+        (Value::Some(v), Type::Option(t)) => show(v, t, types),
         (Value::None(why), _) => format!("none ({why})"),
         (Value::List(items), Type::List(t, _)) => {
-            format!("[{}]", items.iter().map(|v| show(v, t)).collect::<Vec<_>>().join(", "))
+            format!("[{}]", items.iter().map(|v| show(v, t, types)).collect::<Vec<_>>().join(", "))
+        }
+        (Value::Record(values), Type::Record(name)) => {
+            let fields = types.records.get(name).map(|r| r.fields.as_slice()).unwrap_or_default();
+            let field = |(v, (name, t)): (&Value, &(Name, Type))| format!("{name}: {}", show(v, t, types));
+            format!("{name}({})", values.iter().zip(fields).map(field).collect::<Vec<_>>().join(", "))
         }
         (other, _) => format!("{other:?}"),
     }

@@ -24,6 +24,8 @@ pub(crate) trait Visitor {
 #[derive(Debug, Default)]
 pub(crate) struct Grid {
     cell: f64,
+    /// Cells a metre.
+    density: f64,
     low: [f64; 2],
     size: [usize; 2],
     /// First site of each cell, and the end.
@@ -55,6 +57,7 @@ impl Grid {
         let cell = even.min((1.000_001 * range).max(finest));
         self.cell =
             if cell.is_finite() && cell > 1e-9 { cell } else { 1e-9_f64.max(extent[0].max(extent[1])) };
+        self.density = 1.0 / self.cell;
         self.low = if sites.is_empty() { [0.0; 2] } else { low };
         let most = 8 * sites.len() + 2;
         self.size = extent.map(|e| ((e / self.cell) as usize + 1).min(most));
@@ -63,7 +66,7 @@ impl Grid {
         self.cell_of.clear();
         for s in sites {
             let [x, y] =
-                [0, 1].map(|a| (((s.at[a] - self.low[a]) / self.cell) as usize).min(self.size[a] - 1));
+                [0, 1].map(|a| (((s.at[a] - self.low[a]) * self.density) as usize).min(self.size[a] - 1));
             let c = y * self.size[0] + x;
             self.cell_of.push(c as u32);
             self.starts[c] += 1;
@@ -90,7 +93,7 @@ impl Grid {
             return;
         }
         let nearest = |a: usize| {
-            let x = ((at[a] - self.low[a]) / self.cell).clamp(-1e9, 1e9);
+            let x = ((at[a] - self.low[a]) * self.density).clamp(-1e9, 1e9);
             // Rounds down, without a call of `floor`.
             x as i64 - i64::from(x < x as i64 as f64)
         };

@@ -15,6 +15,9 @@ use std::sync::atomic::Ordering;
 /// The fewest activations at one instant that are too many.
 const TOO_MANY: usize = 1_000_000;
 
+/// Nothing happens for longer than this only where it is asked whether the run is to stop.
+const IDLE: Time = Time(60_000_000_000);
+
 /// How a run ends.
 pub(super) struct End {
     pub outcome: Outcome,
@@ -36,11 +39,27 @@ impl Engine<'_> {
             };
             if next > self.now {
                 self.snapshot();
+                if !self.wait_until(next) {
+                    break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
+                }
                 self.events = 0;
                 self.now = next;
             }
         };
         self.finish(end)
+    }
+
+    /// Lets time pass on the way to a far instant; false when the operator stops the run meanwhile.
+    fn wait_until(&mut self, to: Time) -> bool {
+        let mut t = self.now;
+        while to - t > IDLE {
+            t = t + IDLE;
+            self.platform.advance(t);
+            if self.stop.load(Ordering::Relaxed) {
+                return false;
+            }
+        }
+        true
     }
 
     /// The next instant.

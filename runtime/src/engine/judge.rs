@@ -126,7 +126,8 @@ impl Court<'_> {
     fn ask(&mut self, condition: &Condition, frame: &mut [f64]) -> Result<Answer, Fault> {
         let holds = self.number(&condition.holds, frame)? != 0.0;
         // A margin evaluates what the condition may have left out: a fault there is no fault of the mission.
-        let margin = condition.margin.and_then(|m| self.number(&m, frame).ok());
+        // Nobody is left by minus nothing.
+        let margin = condition.margin.and_then(|m| self.number(&m, frame).ok()).map(|m| m + 0.0);
         Ok(Answer { holds, margin })
     }
 }

@@ -179,6 +179,10 @@ impl Platform for Watched<'_, '_> {
         self.platform.poll(now, readings, reports);
     }
 
+    fn advance(&mut self, now: Time) {
+        self.platform.advance(now);
+    }
+
     fn send(&mut self, now: Time, robot: u32, actuator: u32, command: &[f64], expires: Time) {
         self.platform.send(now, robot, actuator, command, expires);
     }

@@ -116,9 +116,11 @@ impl Program {
             }};
         }
         macro_rules! int {
-            ($d:expr, $v:expr) => {{
+            // `exact` tells whether a result of 2^53 is so or was rounded to it.
+            ($d:expr, $v:expr, $exact:expr) => {{
                 let v: f64 = $v;
-                if v.is_nan() || v.abs() > MAX_INT {
+                let inside = v.abs() < MAX_INT || (v.abs() == MAX_INT && $exact(v));
+                if !inside {
                     return self.overflow(rest.len());
                 }
                 set!($d, v)
@@ -202,9 +204,18 @@ impl Program {
                 Instr::SubFromK { d, a, k } => finite!(d, k!(k) - get!(a)),
                 Instr::MulK { d, a, k } => finite!(d, get!(a) * k!(k)),
                 Instr::DivK { d, a, k } => finite!(d, get!(a) / k!(k)),
-                Instr::AddInt { d, a, b } => int!(d, get!(a) + get!(b)),
-                Instr::SubInt { d, a, b } => int!(d, get!(a) - get!(b)),
-                Instr::MulInt { d, a, b } => int!(d, get!(a) * get!(b)),
+                Instr::AddInt { d, a, b } => {
+                    let (x, y) = (get!(a), get!(b));
+                    int!(d, x + y, |v| v - x == y)
+                }
+                Instr::SubInt { d, a, b } => {
+                    let (x, y) = (get!(a), get!(b));
+                    int!(d, x - y, |v| x - v == y)
+                }
+                Instr::MulInt { d, a, b } => {
+                    let (x, y) = (get!(a), get!(b));
+                    int!(d, x * y, |v| v / x == y)
+                }
                 Instr::Neg { d, a } => set!(d, -get!(a)),
                 Instr::Not { d, a } => truth!(d, get!(a) == 0.0),
                 Instr::Sqrt { d, a } => {

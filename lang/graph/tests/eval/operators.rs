@@ -114,7 +114,14 @@ fn whole_numbers_end_at_two_to_the_53() {
     let big = int(1 << 53);
     assert_eq!(value(&binary(Binary::Sub, big.clone(), int(1))), Value::Int((1 << 53) - 1));
     assert_eq!(fault(&binary(Binary::Add, big.clone(), int(2))), FaultKind::Overflow);
-    assert_eq!(fault(&binary(Binary::Mul, big, int(2))), FaultKind::Overflow);
+    assert_eq!(fault(&binary(Binary::Mul, big.clone(), int(2))), FaultKind::Overflow);
+    // What would be rounded to 2^53 is beyond it, what is 2^53 is not.
+    assert_eq!(fault(&binary(Binary::Add, big.clone(), int(1))), FaultKind::Overflow);
+    assert_eq!(fault(&binary(Binary::Add, int(1), big.clone())), FaultKind::Overflow);
+    assert_eq!(fault(&binary(Binary::Sub, int(-1), big)), FaultKind::Overflow);
+    assert_eq!(fault(&binary(Binary::Mul, int(3), int(3_002_399_751_580_331))), FaultKind::Overflow);
+    assert_eq!(value(&binary(Binary::Add, int((1 << 53) - 1), int(1))), Value::Int(1 << 53));
+    assert_eq!(value(&binary(Binary::Mul, int(1 << 20), int(1 << 33))), Value::Int(1 << 53));
     let cube = op(Op::Power(3), vec![int(1 << 20)], Type::Int);
     assert_eq!(fault(&cube), FaultKind::Overflow);
     assert_eq!(value(&op(Op::Power(3), vec![int(-3)], Type::Int)), Value::Int(-27));
