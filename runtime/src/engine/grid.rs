@@ -92,12 +92,12 @@ impl Grid {
         if self.sites.is_empty() {
             return;
         }
-        let nearest = |a: usize| {
+        let index = |a: usize| {
             let x = ((at[a] - self.low[a]) * self.density).clamp(-1e9, 1e9);
             // Rounds down, without a call of `floor`.
             x as i64 - i64::from(x < x as i64 as f64)
         };
-        let center = [nearest(0), nearest(1)];
+        let center = [index(0), index(1)];
         let size = [self.size[0] as i64, self.size[1] as i64];
         if range < self.cell {
             let [from, to] = [(center[0] - 1).max(0), (center[0] + 1).min(size[0] - 1)];

@@ -28,18 +28,21 @@ impl Engine<'_> {
     /// Runs to the end.
     pub fn run(mut self) -> RunReport {
         let end = loop {
-            if let Some(end) = self.instant() {
-                break end;
-            }
-            if self.stop.load(Ordering::Relaxed) {
-                break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
+            // The instant of a snapshot is over.
+            if !std::mem::take(&mut self.resumed) {
+                if let Some(end) = self.instant() {
+                    break end;
+                }
+                if self.stop.load(Ordering::Relaxed) {
+                    break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
+                }
             }
             let Some(next) = self.next() else {
                 break End { outcome: Outcome::Failed, reason: "nothing is left to happen".into() };
             };
             if next > self.now {
                 self.snapshot();
-                if !self.wait_until(next) {
+                if !self.idle(next) {
                     break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
                 }
                 self.events = 0;
@@ -50,7 +53,7 @@ impl Engine<'_> {
     }
 
     /// Lets time pass on the way to a far instant; false when the operator stops the run meanwhile.
-    fn wait_until(&mut self, to: Time) -> bool {
+    fn idle(&mut self, to: Time) -> bool {
         let mut t = self.now;
         while to - t > IDLE {
             t = t + IDLE;
@@ -63,7 +66,7 @@ impl Engine<'_> {
     }
 
     /// The next instant.
-    pub(super) fn next(&self) -> Option<Time> {
+    fn next(&self) -> Option<Time> {
         let all = [self.platform.next_due(), self.queue.next(), self.actuators.next()];
         let next = all.into_iter().flatten().filter(|t| *t < Time::MAX).min()?;
         Some(self.limit.map_or(next, |l| l.min(next)))

@@ -73,6 +73,8 @@ pub struct Engine<'m> {
     limit: Option<Time>,
 
     now: Time,
+    /// The run goes on from a snapshot, behind the instant it was taken at.
+    resumed: bool,
     /// When the platform was polled last.
     polled: Time,
     params: Vec<f64>,

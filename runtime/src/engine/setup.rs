@@ -86,6 +86,7 @@ impl<'m> Engine<'m> {
             on_reading,
             limit,
             now: Time::ZERO,
+            resumed: false,
             polled: Time::ZERO,
             params: start.params,
             new_params: Vec::new(),

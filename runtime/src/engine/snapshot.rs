@@ -110,9 +110,7 @@ impl Engine<'_> {
             watch.tracks = tracks;
         }
         self.recorder.go_on(s.next);
-        if let Some(next) = self.next() {
-            self.now = next;
-        }
+        self.resumed = true;
         true
     }
 }

@@ -47,6 +47,8 @@ impl<'t, 'r> Recorded<'t, 'r> {
     /// The rest of a run, from a snapshot on, of which the tape has the records after it.
     pub(super) fn resumed(tape: &'t Tape<'r>, snapshot: &Snapshot, stop: &'t AtomicBool) -> Self {
         tape.pull(snapshot.t);
+        // The operator stopped the run while it waited for what comes after the snapshot.
+        stop.store(tape.interrupted(snapshot.t), Ordering::Relaxed);
         let truth = snapshot.truth().map(|t| Truth {
             poses: t.poses.iter().map(|p| p.map_or(IDENTITY, |p| p.0)).collect(),
             paths: t.poses.iter().map(|p| p.map_or(0.0, |p| p.1)).collect(),

@@ -126,3 +126,22 @@ fn an_interrupted_run_is_replayed_to_where_it_was_stopped() {
     let again = replay::resimulate(&mission, &settings(), &scene, &mut world, sink.0).unwrap();
     assert_eq!(again, report);
 }
+
+#[test]
+fn a_run_stopped_while_it_idles_ends_there_from_every_snapshot() {
+    let text = r#"
+edition 1
+mission m {
+  robot a: cart at (0 m, 0 m) runs sleeper
+  goal g { subgoal s by sleeper achieved when rounds > 9 }
+  done when achieved(g)
+  within 9000 s
+}
+agent sleeper {
+  state rounds: Int = 0
+  service wake every 600 s { set rounds = rounds + 1 }
+}
+"#;
+    let ran = run_with(&mission(text), &settings(), |w| w.stops_when_idle = true);
+    assert_eq!((ran.report.outcome, ran.report.sim_time_s), (Outcome::Aborted, 0.0));
+}

@@ -6,7 +6,13 @@ use soifra_runtime::{
     Engine, Event, Mission, Platform, Readings, Record, Report, RunReport, Scene, Settings, Snapshot, Time,
     TraceSink, WorldTruth, replay, scene::RobotScene,
 };
-use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+use std::{
+    collections::BTreeMap,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
 /// Profiles that test missions use.
 pub const PROFILES: &str = r"
@@ -77,6 +83,9 @@ pub struct World {
     /// Added to a reading: robot, sensor, captured, x.
     pub altered: Vec<(u32, u32, Time, f64)>,
     pub truth: bool,
+    /// The operator stops the run while nothing happens.
+    pub stops_when_idle: bool,
+    stop: Arc<AtomicBool>,
     pub sent: Vec<(Time, u32, u32, Vec<f64>, Time)>,
     pub safe: Vec<(Time, u32)>,
 }
@@ -124,6 +133,8 @@ impl World {
             blind: Vec::new(),
             altered: Vec::new(),
             truth: true,
+            stops_when_idle: false,
+            stop: Arc::default(),
             sent: Vec::new(),
             safe: Vec::new(),
         }
@@ -175,6 +186,10 @@ impl Platform for World {
                 readings.push(robot, sensor, captured, Time(next * period + latency), &pose);
             }
         }
+    }
+
+    fn advance(&mut self, _: Time) {
+        self.stop.store(self.stops_when_idle, Ordering::Relaxed);
     }
 
     fn send(&mut self, now: Time, robot: u32, actuator: u32, command: &[f64], expires: Time) {
@@ -247,7 +262,7 @@ pub fn run_with(mission: &Mission, settings: &Settings, prepare: impl FnOnce(&mu
     let mut world = World::new(&scene);
     prepare(&mut world);
     let mut sink = Watcher::default();
-    let stop = AtomicBool::new(false);
+    let stop = world.stop.clone();
     let engine = Engine::new(mission, settings, &scene, &mut world, &mut sink, &stop);
     let report = engine.unwrap_or_else(|e| panic!("{e:?}")).run();
     let Watcher { records, snapshots, .. } = sink;
