@@ -4,11 +4,16 @@ use serde_json::Value;
 use std::{
     path::{Path, PathBuf},
     process::{Command, Output},
+    sync::LazyLock,
 };
 
 /// The repository's root.
+///
+/// Asked of cargo at run time: several clones may share a target folder.
 pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    static ROOT: LazyLock<PathBuf> =
+        LazyLock::new(|| std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder").into());
+    &ROOT
 }
 
 /// The program, run from the repository's root, without a terminal and without colour settings of the caller.

@@ -130,7 +130,7 @@ impl Printer<'_, '_> {
                 Place::Inline => {
                     if pending {
                         // With the token, unless another comment ends the line first.
-                        let alone = comments[i..].iter().any(|c| c.ends_line);
+                        let alone = comments[i..].iter().any(|c| c.place(members, opened) != Place::Inline);
                         let level = if alone { comment_level } else { level };
                         self.line(level, members && !first && (blank || c.breaks > 1));
                         (blank, first, pending) = (false, false, false);

@@ -312,14 +312,15 @@ fn random_world(x: &mut u64, n: usize) -> Vec<Part> {
         .collect()
 }
 
-/// Distance along a ray to a part, by marching.
+/// Distance along a ray to a part, by marching. A ray that grazes a disc of radius r comes within g of it some √(2rg)
+/// before it meets it, so g must be well below the square of what the comparison allows.
 fn march(world: &[Part], from: [f64; 2], bearing: f64, reach: f64) -> Option<f64> {
     let (s, c) = libm::sincos(bearing);
     let mut d = 0.0;
     while d <= reach {
         let p = [from[0] + c * d, from[1] + s * d];
         let gap = world.iter().map(|w| gap(w, p)).fold(f64::INFINITY, f64::min);
-        if gap < 1e-7 {
+        if gap < 1e-13 {
             return Some(d);
         }
         d += gap;
