@@ -121,12 +121,20 @@ impl Env for AgentEnv<'_, '_> {
         Ok(x)
     }
 
+    fn command(&mut self, port: u32, registers: &[f64]) -> Result<(), FaultKind> {
+        self.log.command(port, registers);
+        Ok(())
+    }
+
+    fn publish(&mut self, topic: u32, registers: &[f64]) -> Result<(), FaultKind> {
+        self.log.publish(topic, registers);
+        Ok(())
+    }
+
     fn effect(&mut self, effect: Effect<'_>) -> Result<(), FaultKind> {
         let trace = self.instant.trace;
         let log = &mut *self.log;
         match effect {
-            Effect::Command { port, registers } => log.command(port, registers),
-            Effect::Publish { topic, registers } => log.publish(topic, registers),
             Effect::Tell { performative, to, content, registers } => {
                 let (performative, to, content) = (performative.into(), to.into(), content.clone());
                 let registers = log.keep(registers);
@@ -142,8 +150,7 @@ impl Env for AgentEnv<'_, '_> {
                 self.log.items.push(Item::Note(text));
             }
             Effect::RuleFired { rule, at } if trace => log.items.push(Item::Rule { rule, at }),
-            // Changes of states are seen by comparing before and after.
-            Effect::Note { .. } | Effect::RuleFired { .. } | Effect::StateSet { .. } => {}
+            Effect::Note { .. } | Effect::RuleFired { .. } => {}
         }
         Ok(())
     }

@@ -48,6 +48,7 @@ pub(super) enum Instr {
     Move { d: u32, a: u32 },
     Move3 { d: u32, a: u32 },
     LoadState { d: u32, at: u32 },
+    StoreState { at: u32, a: u32, n: u32 },
     Load { space: Space, d: u32, at: u32 },
     Copy { space: Space, d: u32, at: u32, n: u32 },
 
@@ -191,6 +192,8 @@ pub(super) enum Instr {
     /// Zeroes what a value does not use. `shape` indexes [`Program::shapes`].
     Tidy { a: u32, shape: u32 },
     /// An effect on the value at `a`. `effect` indexes [`Program::effects`].
+    Command { port: u32, a: u32, n: u32 },
+    Publish { topic: u32, a: u32, n: u32 },
     Do { effect: u32, a: u32 },
 }
 
@@ -221,9 +224,6 @@ pub(super) struct ListRef {
 /// How an effect is done.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum EffectCode {
-    State { state: u32, at: u32, n: u32 },
-    Command { port: u32, n: u32 },
-    Publish { topic: u32, n: u32 },
     Tell { performative: Name, to: Name, content: Name, n: u32 },
     Note { text: String, value: Option<(Type, u32)> },
     Raise(u32),

@@ -73,7 +73,15 @@ pub trait Env {
     fn draw(&mut self, _from: Distribution) -> Result<f64, FaultKind> {
         Err(FaultKind::Unavailable("randomness"))
     }
-    /// Something done to the surroundings.
+    /// A command is proposed for an actuator port of the agent. Registers are as those of an [`Effect`].
+    fn command(&mut self, _port: u32, _registers: &[f64]) -> Result<(), FaultKind> {
+        Err(FaultKind::Unavailable("an actuator"))
+    }
+    /// A message is published on a topic. Registers are as those of an [`Effect`].
+    fn publish(&mut self, _topic: u32, _registers: &[f64]) -> Result<(), FaultKind> {
+        Err(FaultKind::Unavailable("a topic"))
+    }
+    /// Something else done to the surroundings.
     fn effect(&mut self, _effect: Effect<'_>) -> Result<(), FaultKind> {
         Err(FaultKind::Unavailable("an effect"))
     }
@@ -82,20 +90,6 @@ pub trait Env {
 /// An effect of a statement. Registers are finite, and unused list items and absent optionals are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Effect<'a> {
-    /// A command is proposed for an actuator port.
-    Command {
-        /// Actuator port of the agent.
-        port: u32,
-        /// The command.
-        registers: &'a [f64],
-    },
-    /// A message is published.
-    Publish {
-        /// Topic.
-        topic: u32,
-        /// The message.
-        registers: &'a [f64],
-    },
     /// Another agent of the same robot is told something.
     Tell {
         /// Performative, lower case.
@@ -120,13 +114,6 @@ pub enum Effect<'a> {
     SetParam {
         /// Parameter.
         param: u32,
-        /// New value.
-        registers: &'a [f64],
-    },
-    /// A state of the agent was set; the memory holds the new value already.
-    StateSet {
-        /// State.
-        state: u32,
         /// New value.
         registers: &'a [f64],
     },

@@ -5,7 +5,8 @@
 //! and were it ever wrong, the run would end in [`FaultKind::Malformed`].
 
 use super::code::{Instr, Program, Space};
-use super::{Block, Env, Fault, FaultKind, Memory, geometry as g};
+use super::run_other::finite_part;
+use super::{Block, Env, Fault, FaultKind, Memory, copy_registers, geometry as g};
 
 /// Beyond this, whole numbers have gaps.
 pub(super) const MAX_INT: f64 = 9_007_199_254_740_992.0;
@@ -71,8 +72,7 @@ impl Program {
     ) -> Result<(), Fault> {
         let code = self.code.as_slice();
         let constants = self.constants.as_slice();
-        let from = |to: usize| code.get(to..).unwrap_or_default().iter();
-        let mut rest = from(start);
+        let mut rest = code.get(start..).unwrap_or_default().iter();
         macro_rules! some {
             ($option:expr) => {
                 match $option {
@@ -132,17 +132,28 @@ impl Program {
                 set!($d, f64::from(u8::from(v)))
             }};
         }
+        macro_rules! go {
+            ($to:expr) => {
+                rest = some!(code.get($to as usize..)).iter()
+            };
+        }
         macro_rules! jump {
             ($when:expr, $to:expr) => {
                 if $when {
-                    rest = from($to as usize);
+                    go!($to);
                 }
             };
         }
         macro_rules! vector {
             ($a:expr) => {
-                some!(array::<3>(frame, $a))
+                some!(array::<3>(frame, $a as usize))
             };
+        }
+        macro_rules! put_vector {
+            ($d:expr, $v:expr) => {{
+                let (d, v): (usize, [f64; 3]) = ($d as usize, $v);
+                *some!(some!(frame.get_mut(d..d + 3)).first_chunk_mut::<3>()) = v;
+            }};
         }
         macro_rules! set_vector {
             ($d:expr, $v:expr) => {{
@@ -150,7 +161,7 @@ impl Program {
                 if ((v[0] - v[0]) + (v[1] - v[1]) + (v[2] - v[2])).is_nan() {
                     return self.not_finite(rest.len());
                 }
-                *some!(some!(frame.get_mut($d as usize..)).first_chunk_mut::<3>()) = v;
+                put_vector!($d, v);
             }};
         }
         loop {
@@ -158,7 +169,7 @@ impl Program {
             match *instr {
                 Instr::End => return Ok(()),
 
-                Instr::Jump { to } => rest = from(to as usize),
+                Instr::Jump { to } => go!(to),
                 Instr::JumpIf { a, to } => jump!(get!(a) != 0.0, to),
                 Instr::JumpUnless { a, to } => jump!(get!(a) == 0.0, to),
                 Instr::JumpLt { a, b, to } => jump!(get!(a) < get!(b), to),
@@ -176,7 +187,7 @@ impl Program {
                 Instr::Move { d, a } => set!(d, get!(a)),
                 Instr::Move3 { d, a } => {
                     let v = vector!(a);
-                    *some!(some!(frame.get_mut(d as usize..)).first_chunk_mut::<3>()) = v;
+                    put_vector!(d, v);
                 }
                 Instr::LoadState { d, at } => set!(d, *some!(m.memory.states.get(at as usize))),
                 Instr::Load { space, d, at } => {
@@ -268,7 +279,7 @@ impl Program {
                     set_vector!(d, v.map(|x| x / by))
                 }
                 Instr::TurnK { d, a, k } => {
-                    let turn = some!(array::<2>(constants, k));
+                    let turn = some!(array::<2>(constants, k as usize));
                     set_vector!(d, g::turned(vector!(a), turn));
                 }
                 Instr::Dot { d, a, b } => {
@@ -282,39 +293,34 @@ impl Program {
 
                 Instr::ListFirst { list, to } => {
                     if !some!(self.first_item(list, frame, m.memory)) {
-                        rest = from(to as usize);
+                        go!(to);
                     }
                 }
                 Instr::ListNext { list, to } => {
                     if some!(self.next_item(list, frame, m.memory)) {
-                        rest = from(to as usize);
+                        go!(to);
                     }
                 }
                 Instr::ListFirst3 { list, to } => {
                     let l = some!(self.lists.get(list as usize));
-                    let count = get!(l.at).min(f64::from(l.capacity)) as u64;
+                    let count = (get!(l.at) as u32).min(l.capacity);
                     if count == 0 {
-                        rest = from(to as usize);
+                        go!(to);
                     } else {
                         let first = u64::from(l.at) + 1 + u64::from(l.part.0);
+                        let v = vector!(first);
+                        put_vector!(l.item as usize + l.part.0 as usize, v);
                         set!(l.state, f64::from_bits(first));
-                        set!(l.state + 1, f64::from_bits(first + count * u64::from(l.width)));
-                        let item = l.item as usize + l.part.0 as usize;
-                        for i in 0..3 {
-                            let x = *some!(frame.get(first as usize + i));
-                            *some!(frame.get_mut(item + i)) = x;
-                        }
+                        set!(l.state + 1, f64::from_bits(first + u64::from(count) * u64::from(l.width)));
                     }
                 }
                 Instr::ListNext3 { stride, q, item, to } => {
                     let next = get!(q).to_bits() + u64::from(stride);
                     if next < get!(q + 1).to_bits() {
                         set!(q, f64::from_bits(next));
-                        for i in 0..3 {
-                            let x = *some!(frame.get(next as usize + i));
-                            *some!(frame.get_mut(item as usize + i)) = x;
-                        }
-                        rest = from(to as usize);
+                        let v = vector!(next);
+                        put_vector!(item, v);
+                        go!(to);
                     }
                 }
                 Instr::Keep { list, d } => some!(self.keep(list, frame, d as usize, m.memory)),
@@ -324,8 +330,7 @@ impl Program {
                         return self.malformed(rest.len());
                     }
                     let v = vector!(a);
-                    let to = d as usize + 1 + 3 * n as usize;
-                    *some!(some!(frame.get_mut(to..)).first_chunk_mut::<3>()) = v;
+                    put_vector!(d as usize + 1 + 3 * (n as u32 as usize), v);
                     set!(d, n + 1.0);
                 }
                 Instr::Append { list, d, a } => {
@@ -337,12 +342,25 @@ impl Program {
 
                 Instr::RobotFirst { .. } | Instr::RobotNext { .. } => {
                     if let Some(to) = try_!(self.robot_loop(instr, frame, m)) {
-                        rest = from(to as usize);
+                        go!(to);
                     }
                 }
                 Instr::Now { d } => finite!(d, try_!(m.env.now())),
                 Instr::Own { .. } | Instr::Reading { .. } | Instr::Heard { .. } => {
                     try_!(self.question(instr, frame, m));
+                }
+                Instr::StoreState { at, a, n } => {
+                    let value = try_!(finite_part(frame, a, n));
+                    let at = at as usize;
+                    copy_registers(value, some!(m.memory.states.get_mut(at..at + value.len())));
+                }
+                Instr::Command { port, a, n } => {
+                    let registers = try_!(finite_part(frame, a, n));
+                    try_!(m.env.command(port, registers));
+                }
+                Instr::Publish { topic, a, n } => {
+                    let registers = try_!(finite_part(frame, a, n));
+                    try_!(m.env.publish(topic, registers));
                 }
                 Instr::Do { effect, a } => {
                     try_!(self.perform(effect, some!(frame.get(a as usize..)), m));
@@ -410,6 +428,7 @@ impl Program {
 
 /// `N` registers from `a`.
 #[inline]
-pub(super) fn array<const N: usize>(frame: &[f64], a: u32) -> Option<[f64; N]> {
-    frame.get(a as usize..)?.first_chunk::<N>().copied()
+pub(super) fn array<const N: usize>(frame: &[f64], a: usize) -> Option<[f64; N]> {
+    // One comparison, where a beginning and a length would take two.
+    frame.get(a..a.checked_add(N)?)?.first_chunk::<N>().copied()
 }

@@ -2,7 +2,7 @@
 
 use super::code::{EffectCode, Instr, Program};
 use super::run::{MAX_INT, Machine, array};
-use super::{Effect, FaultKind, MAX_ROBOTS, builtins, copy_registers, geometry as g, lists};
+use super::{Effect, FaultKind, MAX_ROBOTS, builtins, geometry as g, lists};
 use crate::Distribution;
 
 /// What must be there, for the compiler made it so.
@@ -25,6 +25,14 @@ fn finite(frame: &mut [f64], d: u32, x: f64) -> Result<(), FaultKind> {
 
 fn truth(frame: &mut [f64], d: u32, x: bool) -> Result<(), FaultKind> {
     set(frame, d, f64::from(u8::from(x)))
+}
+
+/// `n` registers from `a`, which are to leave the frame.
+#[inline]
+pub(super) fn finite_part(frame: &[f64], a: u32, n: u32) -> Result<&[f64], FaultKind> {
+    let a = a as usize;
+    let registers = some(frame.get(a..a + n as usize))?;
+    if registers.iter().all(|x| x.is_finite()) { Ok(registers) } else { Err(FaultKind::NotFinite) }
 }
 
 /// `n` registers from `d`, to be filled.
@@ -91,15 +99,15 @@ impl Program {
                 by => each(frame, d, n, |f, i| Ok(get(f, a + i)? / by)),
             },
             Instr::Yaw { d, a } => {
-                let x = g::yaw(g::orientation(some(array::<7>(frame, a))?));
+                let x = g::yaw(g::orientation(some(array::<7>(frame, a as usize))?));
                 finite(frame, d, x)
             }
             Instr::Roll { d, a } => {
-                let x = g::roll(g::orientation(some(array::<7>(frame, a))?));
+                let x = g::roll(g::orientation(some(array::<7>(frame, a as usize))?));
                 finite(frame, d, x)
             }
             Instr::Pitch { d, a } => {
-                let x = g::pitch(g::orientation(some(array::<7>(frame, a))?));
+                let x = g::pitch(g::orientation(some(array::<7>(frame, a as usize))?));
                 finite(frame, d, x)
             }
             Instr::Function1 { f, d, a } => {
@@ -212,11 +220,11 @@ impl Program {
             }
             Instr::Achieved { d, goal } => truth(frame, d, m.env.achieved(goal)?),
             Instr::Inside { d, a, b } => {
-                let inside = m.env.inside(some(array::<3>(frame, a))?, get(frame, b)? as u32)?;
+                let inside = m.env.inside(some(array::<3>(frame, a as usize))?, get(frame, b)? as u32)?;
                 truth(frame, d, inside)
             }
             Instr::Draw { d, a } => {
-                let from = Distribution::from_registers(&some(array::<4>(frame, a))?);
+                let from = Distribution::from_registers(&some(array::<4>(frame, a as usize))?);
                 builtins::can_draw(from)?;
                 finite(frame, d, m.env.draw(from)?)
             }
@@ -279,19 +287,8 @@ impl Program {
     /// Does an effect; `r` begins with its value.
     #[inline(never)]
     pub(super) fn perform(&self, effect: u32, r: &[f64], m: &mut Machine<'_, '_>) -> Result<(), FaultKind> {
-        let value = |n: u32| {
-            let registers = some(r.get(..n as usize))?;
-            if registers.iter().all(|x| x.is_finite()) { Ok(registers) } else { Err(FaultKind::NotFinite) }
-        };
+        let value = |n: u32| finite_part(r, 0, n);
         let effect = match some(self.effects.get(effect as usize))? {
-            EffectCode::State { state, at, n } => {
-                let registers = value(*n)?;
-                let slot = m.memory.states.get_mut(*at as usize..(*at + *n) as usize);
-                copy_registers(registers, some(slot)?);
-                Effect::StateSet { state: *state, registers }
-            }
-            EffectCode::Command { port, n } => Effect::Command { port: *port, registers: value(*n)? },
-            EffectCode::Publish { topic, n } => Effect::Publish { topic: *topic, registers: value(*n)? },
             EffectCode::Tell { performative, to, content, n } => {
                 Effect::Tell { performative, to, content, registers: value(*n)? }
             }

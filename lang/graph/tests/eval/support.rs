@@ -96,7 +96,6 @@ pub enum Done {
     Note(String, Option<(Type, Vec<f64>)>),
     Raise(u32),
     SetParam(u32, Vec<f64>),
-    StateSet(u32, Vec<f64>),
     Rule(u32),
 }
 
@@ -192,13 +191,16 @@ impl Env for World {
         let bits = &mut self.bits;
         Ok(sample(from, &mut || split_mix(bits)))
     }
+    fn command(&mut self, port: u32, registers: &[f64]) -> Result<(), FaultKind> {
+        self.note(Done::Command(port, registers.to_vec()))
+    }
+
+    fn publish(&mut self, topic: u32, registers: &[f64]) -> Result<(), FaultKind> {
+        self.note(Done::Publish(topic, registers.to_vec()))
+    }
+
     fn effect(&mut self, effect: Effect<'_>) -> Result<(), FaultKind> {
-        if self.refuse_after.is_some_and(|n| self.done.len() >= n) {
-            return Err(FaultKind::Refused("no more".into()));
-        }
-        self.done.push(match effect {
-            Effect::Command { port, registers } => Done::Command(port, registers.to_vec()),
-            Effect::Publish { topic, registers } => Done::Publish(topic, registers.to_vec()),
+        self.note(match effect {
             Effect::Tell { performative, to, content, registers } => {
                 Done::Tell(performative.into(), to.into(), content.to_string(), registers.to_vec())
             }
@@ -207,9 +209,17 @@ impl Env for World {
             }
             Effect::Raise(event) => Done::Raise(event),
             Effect::SetParam { param, registers } => Done::SetParam(param, registers.to_vec()),
-            Effect::StateSet { state, registers } => Done::StateSet(state, registers.to_vec()),
             Effect::RuleFired { rule, .. } => Done::Rule(rule),
-        });
+        })
+    }
+}
+
+impl World {
+    fn note(&mut self, done: Done) -> Result<(), FaultKind> {
+        if self.refuse_after.is_some_and(|n| self.done.len() >= n) {
+            return Err(FaultKind::Refused("no more".into()));
+        }
+        self.done.push(done);
         Ok(())
     }
 }

@@ -246,21 +246,24 @@ impl Compiler<'_> {
                     return error(s.at, format!("the agent has no state {i}"));
                 };
                 let (a, n) = self.effect_value(e, &t)?;
-                (EffectCode::State { state: *i, at, n }, a)
+                self.emit(Instr::StoreState { at, a, n }, s.at);
+                return Ok(());
             }
             StmtKind::Command(i, e) => {
                 let Some(t) = agent.actuators.get(*i as usize).map(port) else {
                     return error(s.at, format!("the agent has no actuator {i}"));
                 };
                 let (a, n) = self.effect_value(e, &t)?;
-                (EffectCode::Command { port: *i, n }, a)
+                self.emit(Instr::Command { port: *i, a, n }, s.at);
+                return Ok(());
             }
             StmtKind::Publish(i, e) => {
                 let Some(t) = self.topics.get(*i as usize).map(|t| t.ty.clone()) else {
                     return error(s.at, format!("there is no topic {i}"));
                 };
                 let (a, n) = self.effect_value(e, &t)?;
-                (EffectCode::Publish { topic: *i, n }, a)
+                self.emit(Instr::Publish { topic: *i, a, n }, s.at);
+                return Ok(());
             }
             StmtKind::Tell { performative, to, content } => {
                 let Type::Record(name) = &content.ty else {
