@@ -383,6 +383,7 @@ impl Engine<'_> {
         let mission = self.mission;
         let mut topics: Vec<u32> = Vec::new();
         let mut robots: Vec<u32> = Vec::new();
+        let mut before: &[u32] = &[];
         for r in releases {
             let info = &self.cast.units[r.unit as usize];
             let who = &self.cast.instances[info.instance as usize];
@@ -390,15 +391,16 @@ impl Engine<'_> {
             if hears.is_empty() {
                 continue;
             }
-            for t in hears {
-                if !topics.contains(t) {
-                    topics.push(*t);
-                }
+            if !std::ptr::eq(before, hears.as_slice()) {
+                topics.extend(hears);
+                before = hears;
             }
             if robots.last() != Some(&who.robot) {
                 robots.push(who.robot);
             }
         }
+        topics.sort_unstable();
+        topics.dedup();
         self.prepare(topics.into_iter(), robots.into_iter());
     }
 
