@@ -83,7 +83,8 @@ pub fn verdict(name: &str, what: &str, ratio: f64, bar: Option<f64>) {
         _ => "no bar".into(),
     };
     println!("{name}: {ratio:.3} ({what}; {words})");
-    let folder = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder")).join("out/bench");
+    let folder = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder"))
+        .join("out/bench");
     let text = serde_json::to_string_pretty(&Verdict { name, what, ratio, bar, held }).unwrap_or_default();
     let written = std::fs::create_dir_all(&folder)
         .and_then(|()| std::fs::write(folder.join(format!("{name}.json")), text + "\n"));
@@ -94,7 +95,10 @@ pub fn verdict(name: &str, what: &str, ratio: f64, bar: Option<f64>) {
 
 /// A file of the project.
 pub fn project(path: &str) -> String {
-    PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder")).join(path).to_string_lossy().into_owned()
+    PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder"))
+        .join(path)
+        .to_string_lossy()
+        .into_owned()
 }
 
 /// The text of a file of the project.

@@ -20,6 +20,8 @@ pub struct File {
     pub imports: Vec<Import>,
     /// Items in order.
     pub items: Vec<Item>,
+    /// What could not be read as an item.
+    pub unread: Vec<Span>,
 }
 
 /// `import "rules.soi"` or `import std.motion`.

@@ -13,6 +13,7 @@ mod modules;
 pub mod parse;
 mod test_case;
 mod typed;
+mod unseen;
 mod value;
 
 pub use check::verify;
@@ -65,6 +66,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         return Checked { graph: None, missions, diagnostics, sources, tests: Vec::new() };
     }
     let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    let unseen = unseen::Unseen::of(&program, &diagnostics);
     let mut later = Vec::new();
     let choice = lower::Choice {
         platform: options.platform.clone(),
@@ -73,13 +75,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     };
     let mut graph = lower::lower(&program, &decls, &choice, &mut later);
     if syntax_failed {
-        // Names that an unreadable item would have declared are not the user's second mistake.
-        later.retain(|d| {
-            !matches!(
-                d.code,
-                code::UNKNOWN_NAME | code::UNKNOWN_TYPE | code::UNKNOWN_PLATFORM | code::MISSING_MEMBER
-            )
-        });
+        later.retain(|d| !unseen.explains(d));
         graph = None;
     }
     diagnostics.append(&mut later);

@@ -1,7 +1,7 @@
 //! Has the mission robots, goals, and somebody who pursues them?
 
 use crate::{code, decls::unknown};
-use soifra_graph::{Diagnostic, Graph, Span, UnitKind};
+use soifra_graph::{Diagnostic, ExpectKind, Graph, Span, UnitKind};
 
 /// Checks the mission's frame.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -22,11 +22,18 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         );
     }
     if g.within.is_none() {
-        out.push(
-            Diagnostic::error(code::MISSING_MEMBER, format!("mission `{}` has no time limit", g.name))
-                .at(here, "may never end")
-                .hint("add `within 180 s`, or `within 200 steps`"),
-        );
+        let d = Diagnostic::error(code::MISSING_MEMBER, format!("mission `{}` has no time limit", g.name))
+            .at(here, "may never end");
+        let taken = g.expects.iter().find_map(|e| match &e.kind {
+            ExpectKind::Eventually(_, Some(limit)) | ExpectKind::LeadsTo(_, _, Some(limit)) => Some(limit),
+            _ => None,
+        });
+        out.push(match taken {
+            Some(limit) => d
+                .at(limit.span, "this `within` is the one of the expectation before it")
+                .hint("write the `within` of the mission before its expectations"),
+            None => d.hint("add `within 180 s`, or `within 200 steps`"),
+        });
     }
     let used = super::used_agents(g);
     for goal in &g.goals {

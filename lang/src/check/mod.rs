@@ -5,6 +5,7 @@ mod arbitration;
 mod bounds;
 mod capability;
 mod clock;
+mod computable;
 mod constants;
 mod effects;
 mod events;
@@ -21,6 +22,8 @@ mod timing;
 mod topics;
 mod types;
 pub mod walk;
+
+pub(crate) use ranges::wrong_period;
 
 use soifra_graph::{Diagnostic, Graph};
 
@@ -44,6 +47,7 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(timing::check(graph));
     out.extend(effects::check(graph));
     out.extend(lists::check(graph));
+    out.extend(computable::check(graph));
     out.extend(materials::check(graph));
     out.extend(bounds::check(graph));
     let ranges = ranges::check(graph);

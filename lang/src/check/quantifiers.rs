@@ -1,7 +1,8 @@
 //! Is everything that is asked of a robot known of it?
 
+use super::walk;
 use crate::code;
-use soifra_graph::{Diagnostic, ExpectKind, Expr, Graph, Op, RobotGroup};
+use soifra_graph::{Diagnostic, Expr, Graph, Op, RobotGroup};
 
 /// Checks `done`, expectations and metrics: a state of an agent is asked of robots that run the agent.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -11,13 +12,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         whole(g, &m.value, &mut out);
     }
     for x in &g.expects {
-        let parts: Vec<&Expr> = match &x.kind {
-            ExpectKind::Always(a) | ExpectKind::Never(a) | ExpectKind::Finally(a) => vec![a],
-            ExpectKind::Eventually(a, b) => std::iter::once(a).chain(b).collect(),
-            ExpectKind::Until(a, b) => vec![a, b],
-            ExpectKind::LeadsTo(a, b, c) => [a, b].into_iter().chain(c).collect(),
-        };
-        for e in parts {
+        for e in walk::conditions(&x.kind) {
             if x.each_robot { asked_of_all(g, e, &mut out) } else { whole(g, e, &mut out) }
         }
     }

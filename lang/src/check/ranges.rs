@@ -3,7 +3,8 @@
 use super::constants::Constants;
 use crate::code;
 use soifra_graph::{
-    Component, Diagnostic, Distribution, ExpectKind, Expr, Graph, PlanKind, Strategy, Type, UnitKind, Value,
+    Component, Diagnostic, Distribution, ExpectKind, Expr, Graph, PlanKind, Span, Strategy, Trigger, Type,
+    UnitKind, Value,
 };
 
 /// What an argument must be.
@@ -75,7 +76,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         }
     }
     if let Some(step) = &g.step {
-        c.step(step);
+        c.period(step, "the step of the clock");
     }
     c.limits(g);
     c.behaviours(g);
@@ -213,13 +214,9 @@ impl Ranges<'_> {
         }
     }
 
-    fn step(&mut self, e: &Expr) {
+    fn period(&mut self, e: &Expr, what: &str) {
         let seconds = self.known.value(e, 0);
-        if let Some((why, seen)) = seconds.and_then(|v| Must::BeAPeriod.complaint(&v, "s")) {
-            let title = format!("the step of the clock {why}");
-            let hint = Must::BeAPeriod.hint();
-            self.out.push(Diagnostic::error(code::RANGE, title).at(e.span, seen).hint(hint));
-        }
+        self.out.extend(seconds.and_then(|v| wrong_period(&v, e.span, what)));
     }
 
     fn limits(&mut self, g: &Graph) {
@@ -236,6 +233,11 @@ impl Ranges<'_> {
     fn behaviours(&mut self, g: &Graph) {
         for a in &g.agents {
             for u in &a.units {
+                if let Trigger::Every { period, .. } = &u.trigger
+                    && let Some(v) = period.as_const()
+                {
+                    self.out.extend(wrong_period(v, period.span, &format!("the period of `{}`", u.name)));
+                }
                 let UnitKind::Plan { nodes, .. } = &u.kind else { continue };
                 for n in nodes {
                     match &n.kind {
@@ -258,6 +260,14 @@ impl Ranges<'_> {
             self.duration(e, what, positive);
         }
     }
+}
+
+/// What is wrong with a period of so many seconds. Asked when a unit is lowered, since an agent is checked
+/// without a mission too, and of graphs, which may come from elsewhere.
+pub fn wrong_period(seconds: &Value, at: Span, what: &str) -> Option<Diagnostic> {
+    let (why, seen) = Must::BeAPeriod.complaint(seconds, "s")?;
+    let d = Diagnostic::error(code::RANGE, format!("{what} {why}")).at(at, seen);
+    Some(d.hint(Must::BeAPeriod.hint()))
 }
 
 impl Must {

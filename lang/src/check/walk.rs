@@ -1,6 +1,8 @@
 //! Visits every expression and statement of behaviour.
 
-use soifra_graph::{Agent, Arbiter, Conjunct, Expr, PlanKind, Stmt, StmtKind, Strategy, Unit, UnitKind};
+use soifra_graph::{
+    Agent, Arbiter, Conjunct, ExpectKind, Expr, PlanKind, Stmt, StmtKind, Strategy, Unit, UnitKind,
+};
 
 /// Every expression of an agent, parents first.
 pub fn agent<'a>(a: &'a Agent, visit: &mut dyn FnMut(&'a Expr)) {
@@ -57,6 +59,16 @@ pub fn arbiter<'a>(a: &'a Arbiter, visit: &mut dyn FnMut(&'a Expr)) {
             layers.iter().flat_map(|l| l.hold.iter().chain(&l.inhibited)).for_each(|e| e.walk(visit))
         }
         Strategy::Switch => {}
+    }
+}
+
+/// The conditions and time limits of an expectation.
+pub fn conditions(kind: &ExpectKind) -> Vec<&Expr> {
+    match kind {
+        ExpectKind::Always(a) | ExpectKind::Never(a) | ExpectKind::Finally(a) => vec![a],
+        ExpectKind::Eventually(a, b) => std::iter::once(a).chain(b).collect(),
+        ExpectKind::Until(a, b) => vec![a, b],
+        ExpectKind::LeadsTo(a, b, c) => [a, b].into_iter().chain(c).collect(),
     }
 }
 

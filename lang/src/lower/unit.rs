@@ -2,17 +2,18 @@
 
 use crate::{
     ast::{self, TriggerKind},
+    check::wrong_period,
     code,
     decls::unknown,
     typed::{Body, Checker, Place},
 };
-use soifra_graph::{Diagnostic, Name, State, Timing, Trigger, Type, Unit, UnitKind, Value};
+use soifra_graph::{Diagnostic, Name, State, Timing, Trigger, Type, Unit, UnitKind};
 
 impl<'a> Checker<'a> {
     /// Lowers a unit of the current agent; machine data become states of it.
     pub fn unit(&mut self, u: &'a ast::Unit, states: &mut Vec<State>) -> Option<Unit> {
         let mut body = Body::new(Place::Behaviour);
-        let trigger = self.trigger(&u.trigger, &mut body);
+        let trigger = self.trigger(&u.name, &u.trigger, &mut body);
         let timing = self.timing(&u.timing, trigger.as_ref());
         let (kind, body) = self.in_body(body, |c| match &u.kind {
             ast::UnitKind::Service(stmts) => Some(UnitKind::Service(c.block(stmts, 0))),
@@ -33,19 +34,14 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn trigger(&mut self, t: &ast::Trigger, body: &mut Body) -> Option<Trigger> {
+    fn trigger(&mut self, unit: &ast::Ident, t: &ast::Trigger, body: &mut Body) -> Option<Trigger> {
         Some(match &t.kind {
             TriggerKind::Step(offset) => Trigger::Step { offset: self.offset(offset)? },
             TriggerKind::Every(period, offset) => {
                 let period = self.start_duration(period)?;
-                if let Some(Value::Number(s)) = period.as_const()
-                    && *s < 1e-6
-                {
-                    self.report(
-                        Diagnostic::error(code::RANGE, "a period below 1 us")
-                            .at(period.span, format!("{s} s"))
-                            .hint("the shortest period is 1 us"),
-                    );
+                let what = format!("the period of `{}`", unit.name);
+                if let Some(d) = period.as_const().and_then(|v| wrong_period(v, period.span, &what)) {
+                    self.report(d);
                     return None;
                 }
                 Trigger::Every { period, offset: self.offset(offset)? }

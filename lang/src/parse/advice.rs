@@ -16,6 +16,10 @@ pub fn hint(text: &str, from: usize, expected: &[String]) -> String {
     }
     if word.is_empty() {
         return match found.chars().next() {
+            Some('&') => "two conditions are joined with `and`".into(),
+            Some('|') => "two conditions are joined with `or`; `or` also gives a value in place of an absent one".into(),
+            Some('!') if !found.starts_with("!=") => "the opposite of a condition is `not …`".into(),
+            Some(';') => "nothing closes a statement: leave the `;` out".into(),
             Some('=') if !found.starts_with("==") => {
                 "two values are compared with `==`; a state is changed with `set NAME = …`".into()
             }
@@ -32,6 +36,10 @@ pub fn hint(text: &str, from: usize, expected: &[String]) -> String {
     }
     if word == "import" || word == "edition" {
         return format!("`{word}` stands at the top of the file, before everything else");
+    }
+    let step = ["+=", "-=", "*=", "/=", "++", "--"].iter().find(|s| after.starts_with(**s));
+    if let Some(step) = step {
+        return format!("a state is changed with `set {word} = {word} {} …`", &step[..1]);
     }
     if after.starts_with('=') && !after.starts_with("==") && !after.starts_with("=>") {
         return format!("a state is changed with `set {word} = …`, a value is named with `let {word} = …`");

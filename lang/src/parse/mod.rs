@@ -75,6 +75,8 @@ pub(crate) fn tree(text: &str) -> Option<pest::iterators::Pair<'_, Rule>> {
 
 impl Builder {
     fn file(&mut self, root: pest::iterators::Pair<'_, Rule>, tree: &mut ast::File) {
+        // Begin and end of the item before, when it is among the items.
+        let mut before: Option<(usize, usize)> = None;
         for pair in root.into_inner() {
             match pair.as_rule() {
                 Rule::edition => {
@@ -85,21 +87,34 @@ impl Builder {
                 }
                 Rule::import => tree.imports.push(self.import(pair)),
                 Rule::item => {
+                    let place = (pair.as_span().start(), end(&pair));
+                    before = None;
                     if let Some(inner) = pair.into_inner().find(|p| p.as_rule() != Rule::COMMENT)
                         && let Some(item) = self.item(inner)
                     {
                         tree.items.push(item);
+                        before = Some(place);
                     }
                 }
-                Rule::junk => self.junk(&pair),
+                Rule::junk => {
+                    let (text, mut from) = (pair.get_input(), pair.as_span().start());
+                    // What follows on the line of an item is the rest of it: it was not understood whole.
+                    if let Some((start, end)) = before.take()
+                        && !text[end..from].contains('\n')
+                    {
+                        tree.items.pop();
+                        from = start;
+                    }
+                    self.junk(&text[from..pair.as_span().end()], from, tree);
+                }
                 _ => {}
             }
         }
     }
 
     /// Something between items that is none: parsed again by itself, for pest's own error.
-    fn junk(&mut self, pair: &pest::iterators::Pair<'_, Rule>) {
-        let (text, at) = (pair.as_str(), pair.as_span().start());
+    fn junk(&mut self, text: &str, at: usize, tree: &mut ast::File) {
+        tree.unread.push(Span::new(self.file, at, at + text.len()));
         let e = match Grammar::parse(Rule::item_alone, text) {
             Err(e) => message::syntax(self.file, at, text, &e),
             // Readable alone but not where it stands: an edition or import after the items, say.

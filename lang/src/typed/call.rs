@@ -4,7 +4,7 @@ use super::{Checker, Place, lists};
 use crate::{ast::*, code, decls::unknown};
 use soifra_graph::{
     Diagnostic, Expr as GExpr, FUNCTIONS, Function as Builtin, Name, Op, Signature, Span, Type, Value,
-    pattern::{Bindings, Pattern},
+    pattern::{Bindings, DimPattern, Pattern},
     typing,
 };
 
@@ -236,6 +236,7 @@ impl Checker<'_> {
             let value = match slot {
                 Some(g) => {
                     let want = p.pattern.instantiate(&bindings).or_else(|| open(&p.pattern, &bindings));
+                    let want = want.or_else(|| self.written_vector(&p.pattern, &bindings, &g));
                     let e = self.value(g, want.as_ref())?;
                     self.fit_pattern(e, &p.pattern, &mut bindings, f, &p.name, &form)?
                 }
@@ -271,6 +272,16 @@ impl Checker<'_> {
             out.push((p.name.clone(), value));
         }
         Some((out, bindings))
+    }
+
+    /// The type a tuple has as a vector of any dimension: that of its first part.
+    fn written_vector(&mut self, pattern: &Pattern, bindings: &Bindings, g: &Given<'_>) -> Option<Type> {
+        let (Pattern::Vector(_, DimPattern::Var(dim)), Given::Written(a)) = (pattern, g) else { return None };
+        let ExprKind::Tuple(items) = &*a.value.kind else { return None };
+        let first = self.expr(items.first()?, None)?;
+        let mut b = any_frame(bindings);
+        b.dims.insert(dim.clone(), typing::number(&first.ty)?);
+        pattern.instantiate(&b)
     }
 
     fn fit_pattern(
@@ -663,14 +674,19 @@ fn frames(t: &Type) -> Vec<Type> {
 /// A type to guide a literal when part of the pattern is still open: quantities of an open dimension
 /// say nothing, points and vectors of an open frame are taken in map.
 fn open(pattern: &Pattern, bindings: &Bindings) -> Option<Type> {
+    match pattern {
+        Pattern::Point(_) | Pattern::Pose(_) | Pattern::Heading(_) | Pattern::Vector(..) => {
+            pattern.instantiate(&any_frame(bindings))
+        }
+        _ => None,
+    }
+}
+
+/// What is bound, and frames that are not as map.
+fn any_frame(bindings: &Bindings) -> Bindings {
     let mut b = bindings.clone();
     for v in ["F", "G"] {
         b.frames.entry(v.into()).or_insert_with(soifra_graph::Frame::map);
     }
-    match pattern {
-        Pattern::Point(_) | Pattern::Pose(_) | Pattern::Heading(_) | Pattern::Vector(..) => {
-            pattern.instantiate(&b)
-        }
-        _ => None,
-    }
+    b
 }

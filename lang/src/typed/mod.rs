@@ -259,6 +259,14 @@ impl<'a> Checker<'a> {
             (Type::Int | Type::Quantity(soifra_graph::Dim::NONE), Type::Quantity(dim)) => {
                 d.hint(format!("write its unit, for example `{}`", dim.si_unit()))
             }
+            (Type::Quantity(have), Type::Quantity(dim))
+                if have.times(*dim) == Some(soifra_graph::Dim::NONE) =>
+            {
+                d.hint(format!("its inverse is wanted, a value in {}", dim.si_unit()))
+            }
+            (Type::Quantity(have), Type::Distribution(dim)) if have == dim => {
+                d.hint("write a distribution, such as `normal(sd: …)` or `uniform(…)`")
+            }
             (Type::Quantity(_), Type::Quantity(dim)) => {
                 d.hint(format!("a value in {} is needed", dim.si_unit()))
             }

@@ -457,6 +457,7 @@ impl<'a> Checker<'a> {
         v.extend(self.types.enums.values().flat_map(|e| e.variants.iter().map(|v| v.to_string())));
         if b.place == Place::Truth {
             v.extend(["collisions".into(), "collision".into(), "now".into(), "steps".into()]);
+            v.extend(self.robots.iter().map(|r| r.0.to_string()));
         }
         v
     }

@@ -20,7 +20,9 @@ use std::{
 
 /// A file of the repository.
 pub fn repository(path: &str) -> PathBuf {
-    PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder")).join("..").join(path)
+    PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder"))
+        .join("..")
+        .join(path)
 }
 
 /// Its text.

@@ -4,7 +4,8 @@ use soifra_platforms::library;
 
 #[test]
 fn every_file_of_the_folders_is_there() {
-    let root = std::path::PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder"));
+    let root =
+        std::path::PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder"));
     let names: Vec<&str> = library().map(|(name, _)| name).collect();
     assert!(names.is_sorted());
     for folder in ["profiles", "worlds"] {

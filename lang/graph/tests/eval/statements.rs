@@ -141,7 +141,7 @@ fn a_bound_value_outlives_a_change_of_its_state() {
     let last = registers.states.len() - 1;
     registers.states[last] = 3.0;
     run(stmts, &[LENGTH], &mut registers, &mut world).unwrap();
-    assert_eq!(world.done[1], Done::Note("was".into(), Some((LENGTH, vec![3.0]))));
+    assert_eq!(world.done[0], Done::Note("was".into(), Some((LENGTH, vec![3.0]))));
     assert_eq!(registers.states[last], 9.0);
 }
 
