@@ -75,7 +75,13 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let stop = interrupt::flag();
     let compiled = a.mission.compile()?;
     compiled.findings.print();
-    let sets = a.sets.iter().map(|s| compile::split_setting(s)).collect::<Result<Vec<_>, _>>()?;
+    let mut sets = Vec::new();
+    for s in &a.sets {
+        let (name, value) = compile::split_setting(s)?;
+        // Of several values for one parameter the last counts.
+        sets.retain(|(n, _)| *n != name);
+        sets.push((name, value));
+    }
     let values = compile::settings(&compiled.graph, &sets)?;
     compile::verify_with(&compiled.graph, &values)?;
     let graph_digest = graph_file::digest(&compiled.graph);

@@ -6,6 +6,7 @@ use soifra_graph::{
     Component, Diagnostic, Distribution, ExpectKind, Expr, Graph, PlanKind, Span, Strategy, Trigger, Type,
     UnitKind, Value,
 };
+use std::f64::consts::{PI, TAU};
 
 /// What an argument must be.
 #[derive(Clone, Copy)]
@@ -14,8 +15,9 @@ enum Must {
     BeAPeriod,
     NotBeNegative,
     BeAChance,
-    Ascend,
+    AscendWithinATurn,
     AscendFromZero,
+    BeAtMostHalfATurn,
     BeAColour,
     HaveTwoPoints,
 }
@@ -25,11 +27,11 @@ const RULES: &[(&str, Must)] = &[
     ("beams", Must::BePositive),
     ("bearings", Must::BePositive),
     ("color", Must::BeAColour),
-    ("cone", Must::BePositive),
+    ("cone", Must::BeAtMostHalfATurn),
     ("delay", Must::NotBeNegative),
     ("duration", Must::BeAPeriod),
     ("false_alarm", Must::BeAChance),
-    ("field", Must::Ascend),
+    ("field", Must::AscendWithinATurn),
     ("height", Must::BePositive),
     ("keep_out", Must::NotBeNegative),
     ("lag", Must::NotBeNegative),
@@ -286,8 +288,16 @@ impl Must {
             (Must::BeAPeriod, _) => number(|x| x < SHORTEST, "must be at least 1 us"),
             (Must::NotBeNegative, _) => number(|x| x < 0.0, "cannot be below 0"),
             (Must::BeAChance, _) => number(|x| !(0.0..=1.0).contains(&x), "must be from 0 to 1"),
-            (Must::Ascend | Must::AscendFromZero, Value::Range(a, b)) if a >= b => {
+            (Must::AscendWithinATurn | Must::AscendFromZero, Value::Range(a, b)) if a >= b => {
                 Some(("runs backwards", format!("from {} to {}", shown(*a), shown(*b))))
+            }
+            // A hair more: the ends are rounded.
+            (Must::AscendWithinATurn, Value::Range(a, b)) if b - a > TAU * (1.0 + 1e-12) => Some((
+                "is wider than a turn",
+                format!("{} deg wide", ((b - a).to_degrees() * 1e6).round() / 1e6),
+            )),
+            (Must::BeAtMostHalfATurn, _) => {
+                number(|x| x <= 0.0 || x > PI, "must be above 0 and at most 180 deg")
             }
             (Must::AscendFromZero, Value::Range(a, _)) if *a < 0.0 => {
                 Some(("cannot begin below 0", format!("from {}", shown(*a))))
@@ -312,7 +322,8 @@ impl Must {
             Must::BeAPeriod => "write a longer one: what happens more often never lets the time go on",
             Must::NotBeNegative => "write 0 or more",
             Must::BeAChance => "write a value from 0 to 1, or from 0 % to 100 %",
-            Must::Ascend => "write the smaller end first",
+            Must::AscendWithinATurn => "write the smaller end first, and ends that lie at most 360 deg apart",
+            Must::BeAtMostHalfATurn => "write an angle up to 180 deg",
             Must::AscendFromZero => "write the smaller end first; ranges begin at 0 or above",
             Must::BeAColour => "write it as `#rrggbb`, for example `#e8e4da`",
             Must::HaveTwoPoints => {

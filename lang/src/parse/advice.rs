@@ -28,6 +28,7 @@ pub fn hint(text: &str, from: usize, expected: &[String]) -> String {
             Some(c) if !c.is_ascii() && c.is_alphanumeric() => {
                 "names are made of the letters a to z, digits and `_`; other letters can stand in texts and comments".into()
             }
+            _ if wanted("a value") => "a value is missing before this".into(),
             _ => "see the construct's grammar in docs/language.md, or `soifra explain S0101`".into(),
         };
     }
