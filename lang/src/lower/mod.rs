@@ -3,7 +3,9 @@
 mod agent;
 mod arbiter;
 mod component;
+mod declarations;
 mod function;
+mod judgement;
 mod machine;
 mod mission;
 mod plan;

@@ -1,11 +1,13 @@
 //! Typing: syntax trees become typed graph expressions and statements.
 
+mod arguments;
 mod call;
 mod choice;
 mod expr;
 mod indexed;
 mod lists;
 mod names;
+mod special;
 mod stmt;
 mod types;
 

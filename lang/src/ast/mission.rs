@@ -1,0 +1,126 @@
+//! Missions and tests.
+
+use super::{Arg, Constant, Entry, Expr, Ident, Param};
+use soifra_graph::Span;
+
+/// A mission.
+#[derive(Debug, Clone)]
+pub struct Mission {
+    /// Name.
+    pub name: Ident,
+    /// Title.
+    pub title: Option<String>,
+    /// Members in order.
+    pub members: Vec<MissionMember>,
+}
+
+/// A member of a mission.
+#[derive(Debug, Clone)]
+pub enum MissionMember {
+    /// `param`
+    Param(Param),
+    /// `clock step`
+    Clock(Expr),
+    /// `robot`
+    Robot(Robot),
+    /// `goal`
+    Goal(Goal),
+    /// `done when`
+    Done(Expr, Span),
+    /// `within`
+    Within(Expr, Span),
+    /// `expect`
+    Expect(Expect),
+    /// `metric`
+    Metric(Constant),
+    /// `let`
+    Constant(Constant),
+    /// `world NAME`
+    World(Ident),
+    /// A world entry of the mission's own.
+    Entry(Entry),
+}
+
+/// A robot, or an array of robots.
+#[derive(Debug, Clone)]
+pub struct Robot {
+    /// Name.
+    pub name: Ident,
+    /// Array size.
+    pub count: Option<Expr>,
+    /// Platforms, the first is used unless another is asked for.
+    pub platforms: Vec<Ident>,
+    /// Start.
+    pub at: Expr,
+    /// Target.
+    pub target: Option<Expr>,
+    /// Scatter.
+    pub scatter: Option<Expr>,
+    /// Agents.
+    pub runs: Vec<(Ident, Vec<Arg>)>,
+}
+
+/// A goal with sub-goals: name, agent, condition.
+#[derive(Debug, Clone)]
+pub struct Goal {
+    /// Name.
+    pub name: Ident,
+    /// Sub-goals.
+    pub subgoals: Vec<SubGoal>,
+}
+
+/// `subgoal name by agent achieved when …`
+#[derive(Debug, Clone)]
+pub struct SubGoal {
+    /// Name.
+    pub name: Ident,
+    /// Agent.
+    pub agent: Ident,
+    /// Condition.
+    pub achieved: Option<Expr>,
+}
+
+/// An expectation.
+#[derive(Debug, Clone)]
+pub struct Expect {
+    /// For each robot by itself.
+    pub each_robot: bool,
+    /// What.
+    pub kind: ExpectKind,
+    /// All of it.
+    pub span: Span,
+}
+
+/// Kinds of expectations.
+#[derive(Debug, Clone)]
+pub enum ExpectKind {
+    /// `always`
+    Always(Expr),
+    /// `never`
+    Never(Expr),
+    /// `eventually … within`
+    Eventually(Expr, Option<Expr>),
+    /// `… until …`
+    Until(Expr, Expr),
+    /// `… leads to … within`
+    LeadsTo(Expr, Expr, Option<Expr>),
+    /// At the end.
+    Finally(Expr),
+}
+
+/// `test`
+#[derive(Debug, Clone)]
+pub struct Test {
+    /// Name.
+    pub name: Ident,
+    /// `run`
+    pub run: Vec<Ident>,
+    /// `seeds`
+    pub seeds: Option<Expr>,
+    /// `set`
+    pub sets: Vec<Constant>,
+    /// `expect outcome`
+    pub outcome: Option<Ident>,
+    /// `expect`
+    pub expects: Vec<Expr>,
+}
