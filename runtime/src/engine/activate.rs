@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     Time,
-    mission::code::{AgentCode, KindCode, PlanCode, StateCode},
+    mission::code::{AgentCode, BeliefCode, KindCode, PlanCode, StateCode},
     nodes::{self, Code, Ended, Host, Status},
 };
 use soifra_graph::{
@@ -255,10 +255,12 @@ impl Run<'_, '_> {
     /// Sub-goals that are achieved by belief.
     fn subgoals(&mut self, agent: &AgentCode, subgoals: &mut [u8]) -> Result<(), Fault> {
         for (i, s) in agent.subgoals.iter().enumerate() {
-            if let Some(block) = &s.achieved {
-                let now = if self.holds(block)? { ACHIEVED } else { ACTIVE };
-                self.subgoal(i as u32, now, subgoals);
-            }
+            let holds = match &s.achieved {
+                Some(BeliefCode::State(at)) => self.memory.states.get(*at).is_some_and(|x| *x != 0.0),
+                Some(BeliefCode::Condition(block)) => self.holds(block)?,
+                None => continue,
+            };
+            self.subgoal(i as u32, if holds { ACHIEVED } else { ACTIVE }, subgoals);
         }
         Ok(())
     }

@@ -26,9 +26,16 @@ pub(crate) struct SubgoalCode {
     pub goal: u32,
     pub name: Name,
     /// When the agent believes it achieved.
-    pub achieved: Option<Block>,
+    pub achieved: Option<BeliefCode>,
     /// Unit whose plan it is achieved by.
     pub plan: Option<u32>,
+}
+
+/// A condition on what an agent knows.
+pub(crate) enum BeliefCode {
+    /// A state that is a `Bool`, by register: most are, and to look at one needs no evaluation.
+    State(usize),
+    Condition(Block),
 }
 
 /// A unit.

@@ -3,7 +3,7 @@
 use super::{code::*, uses::Uses};
 use crate::nodes::{Act, Kind, MAX_DEPTH, Part, Tree};
 use soifra_graph::{
-    Agent, Arbiter, Expr, Graph, PlanKind, PlanNode, Span, Stmt, Strategy, Timing, Trigger, Type, Unit,
+    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Span, Stmt, Strategy, Timing, Trigger, Type, Unit,
     UnitKind,
     eval::{Block, CompileError, Compiler, Layout, Scope},
 };
@@ -88,14 +88,24 @@ pub(super) fn agent(
     }
     for (g, goal) in graph.goals.iter().enumerate() {
         for s in goal.subgoals.iter().filter(|s| s.agent == index) {
-            let achieved = match s.achieved.as_ref().map(|e| number(c, e)).transpose() {
+            let register = |e: &Expr| match e.op {
+                Op::State(i) => code.states.range(i as usize).map(|r| r.start),
+                _ => None,
+            };
+            let belief = |e: &Expr| match register(e) {
+                Some(at) => Ok(BeliefCode::State(at)),
+                None => number(c, e).map(BeliefCode::Condition),
+            };
+            let achieved = match s.achieved.as_ref().map(belief).transpose() {
                 Ok(a) => a,
                 Err(e) => {
                     keep(e);
                     None
                 }
             };
-            code.frame = code.frame.max(achieved.map_or(0, |b| b.frame as usize));
+            if let Some(BeliefCode::Condition(b)) = &achieved {
+                code.frame = code.frame.max(b.frame as usize);
+            }
             let is_plan =
                 |u: &Unit| matches!(&u.kind, UnitKind::Plan { subgoal: Some(n), .. } if *n == s.name);
             let plan = agent.units.iter().position(is_plan).map(|u| u as u32);

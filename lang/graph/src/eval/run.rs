@@ -55,16 +55,8 @@ impl Program {
         memory: &mut Memory<'_>,
         env: &mut dyn Env,
     ) -> Result<(), Fault> {
-        // Most beliefs are a state: to look at it needs no machine.
-        let start = block.start as usize;
-        if let Some([Instr::LoadState { d, at }, Instr::End]) = self.code.get(start..start + 2)
-            && let (Some(to), Some(x)) = (frame.get_mut(*d as usize), memory.states.get(*at as usize))
-        {
-            *to = *x;
-            return Ok(());
-        }
         let mut machine = Machine::new(memory, env);
-        let done = self.execute(start, frame, &mut machine);
+        let done = self.execute(block.start as usize, frame, &mut machine);
         if let (Err(_), Some(former)) = (&done, machine.former) {
             machine.env.set_robot(former);
         }
