@@ -146,7 +146,8 @@ impl Study {
                 continue;
             }
             output::note(&format!("{}: piece {i} of {pieces}", self.name));
-            let (document, exit) = sweep::execute(&self.mission, plan.clone(), Some((i, pieces)), threads)?;
+            let (document, exit) =
+                sweep::execute(&self.mission, None, plan.clone(), Some((i, pieces)), threads)?;
             if exit == Exit::Interrupted || interrupt::requested() {
                 return Ok(None);
             }

@@ -26,7 +26,11 @@ pub fn read_text(path: &str) -> Result<String, Refusal> {
                 Span::new(0, at, at + '\u{fffd}'.len_utf8()),
                 format!("byte {bad:#04x} at offset {at} belongs to no character"),
             )
-            .hint("save the file as UTF-8; missions and graphs are text files");
+            .hint(if e.as_bytes().starts_with(b"\x89MCAP") {
+                "this is a trace: `soifra replay` and `soifra plot` read it"
+            } else {
+                "save the file as UTF-8; missions and graphs are text files"
+            });
         Refusal::with(diagnostic, Source { path: path.into(), text })
     })
 }

@@ -74,12 +74,12 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         mission: options.mission.clone(),
     };
     let mut graph = lower::lower(&program, &decls, &choice, &mut later);
+    let tests = test_case::collect(&decls, graph.as_ref(), &mut later);
     if syntax_failed {
         later.retain(|d| !unseen.explains(d));
         graph = None;
     }
     diagnostics.append(&mut later);
-    let tests = test_case::collect(&decls, graph.as_ref(), &mut diagnostics);
     if let Some(g) = &graph {
         diagnostics.extend(verify(g));
         if options.platform.is_none() {

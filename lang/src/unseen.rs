@@ -20,7 +20,10 @@ impl<'p> Unseen<'p> {
         };
         let unread = program.modules.iter().flat_map(|m| &m.tree.unread);
         let words = unread.flat_map(|span| text(program, *span).split(|c: char| !is_word(c)));
-        let words = (!errors.iter().any(file_lost)).then(|| words.filter(|w| !w.is_empty()).collect());
+        let words: BTreeSet<&str> = words.filter(|w| !w.is_empty()).collect();
+        // An import that cannot be read is a file that is not there.
+        let lost = errors.iter().any(file_lost) || words.iter().any(|w| w.eq_ignore_ascii_case("import"));
+        let words = (!lost).then_some(words);
         Unseen { program, words }
     }
 

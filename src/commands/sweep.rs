@@ -34,6 +34,9 @@ struct Sweep {
     /// Mission source (.soi) or behaviour graph (.yaml, .json)
     #[arg(required = true, value_hint = ValueHint::FilePath)]
     file: Option<String>,
+    /// Which mission of the file [default: its first]
+    #[arg(long, value_name = "NAME")]
+    mission: Option<String>,
     /// Seeds: `20` for 1 to 20, or a list as `1..20,42`
     #[arg(long, value_name = "SEEDS", default_value = "20")]
     seeds: String,
@@ -126,7 +129,7 @@ fn execute(a: &Sweep) -> Result<(Document, Exit), Refusal> {
     if plan.runs().is_none_or(|n| n > 10_000_000) {
         return Err(wrong("sweep".into(), "more than ten million runs".into()));
     }
-    sweep::execute(file, plan, shard, execute::threads(a.threads))
+    sweep::execute(file, a.mission.as_deref(), plan, shard, execute::threads(a.threads))
 }
 
 fn merge(paths: &[String]) -> Result<(Document, Exit), Refusal> {

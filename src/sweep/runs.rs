@@ -19,10 +19,11 @@ struct Job {
     seed: u64,
 }
 
-/// Runs `plan`, or the part of it that `shard` names, on `threads` threads. Everything that can be
+/// Runs `plan` on the mission of that name, else on the file's first, or the part of it that `shard` names, on `threads` threads. Everything that can be
 /// refused is refused before the first run starts. The second value is the worst run's exit code.
 pub fn execute(
     file: &str,
+    mission: Option<&str>,
     plan: Plan,
     shard: Option<(usize, usize)>,
     threads: usize,
@@ -33,7 +34,7 @@ pub fn execute(
     let mut values: Vec<Vec<(usize, Value)>> = Vec::new();
     for case in &cases {
         if !missions.contains_key(&case.platform) {
-            let compiled = compile::compile(file, case.platform.as_deref())?;
+            let compiled = compile::compile_mission(file, case.platform.as_deref(), mission)?;
             if missions.is_empty() {
                 compiled.findings.print();
             }

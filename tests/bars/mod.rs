@@ -8,7 +8,7 @@ fn bars_hold_on_a_sample() {
     let studies = bars::read("missions/bars.yaml").unwrap_or_else(|r| panic!("{}", r.findings.render(false)));
     for study in studies {
         let plan = study.plan(&study.sample).unwrap_or_else(|r| panic!("{}", r.findings.render(false)));
-        let (document, _) = sweep::execute(&study.mission, plan, None, 2)
+        let (document, _) = sweep::execute(&study.mission, None, plan, None, 2)
             .unwrap_or_else(|r| panic!("{}", r.findings.render(false)));
         for (bar, verdict) in study.bars.iter().zip(study.verdicts(&document)) {
             assert!(

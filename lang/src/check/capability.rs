@@ -119,8 +119,9 @@ fn port_on(
                     .at(port.span, format!("{} is wanted", port.ty))
                     .at(c.at, format!("{have} is what it gives"))
                     .hint(format!(
-                        "declare `{role} {}: {have}` in the agent, or choose a platform that fits",
-                        port.name
+                        "declare `{role} {}: {have}{}` in the agent, or choose a platform that fits",
+                        port.name,
+                        if port.optional { "?" } else { "" }
                     )),
                 );
             }

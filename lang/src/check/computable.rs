@@ -47,6 +47,9 @@ impl Search<'_> {
     }
 }
 
+/// Sums and products of smaller constants stay in the range of whole numbers and of numbers.
+const LARGE: f64 = 1e15;
+
 /// Whether its value depends on nothing.
 fn is_written_out(e: &Expr) -> bool {
     let pure = matches!(
@@ -67,6 +70,10 @@ fn is_written_out(e: &Expr) -> bool {
 
 /// Whether some operator in it has no value for some operands of a usual size.
 fn can_fail(e: &Expr) -> bool {
-    let here = matches!(e.op, Op::Binary(Binary::Div) | Op::Builtin(_) | Op::Power(_) | Op::Sqrt);
+    let here = match &e.op {
+        Op::Binary(Binary::Div) | Op::Builtin(_) | Op::Power(_) | Op::Sqrt => true,
+        Op::Const(v) => v.number().is_some_and(|x| x.abs() >= LARGE),
+        _ => false,
+    };
     here || e.args.iter().any(can_fail)
 }

@@ -97,7 +97,6 @@ impl<'a> Checker<'a> {
         clippy::option_option,
         reason = "outer: whether it could be lowered, inner: whether it is there; 2026-11"
     )]
-
     pub(super) fn optional_limit(&mut self, e: Option<&ast::Expr>) -> Option<Option<Expr>> {
         match e {
             Some(e) => Some(Some(self.limit(e)?)),

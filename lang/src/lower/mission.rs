@@ -248,7 +248,12 @@ impl<'a> Checker<'a> {
                 Diagnostic::error(code::DUPLICATE, format!("a mission has one `{what}`"))
                     .at(second, "the second")
                     .at(at, "the first")
-                    .hint("remove one of them"),
+                    .hint(match what {
+                        "within" => {
+                            "remove one of them; of expectations, only `eventually` and `leads to` have a time limit"
+                        }
+                        _ => "remove one of them",
+                    }),
             );
         }
         Some(first)

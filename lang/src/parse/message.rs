@@ -2,26 +2,22 @@
 
 use super::{Rule, advice};
 use crate::code;
-use pest::error::{Error, ErrorVariant, InputLocation};
+use pest::error::{Error, ErrorVariant};
 use soifra_graph::{Diagnostic, Span};
 
 /// The diagnostic for a syntax error in `text`, which starts at byte `at` of source `file`.
 pub fn syntax(file: u32, at: usize, text: &str, e: &Error<Rule>) -> Diagnostic {
-    let from = match e.location {
-        InputLocation::Pos(p) => p,
-        InputLocation::Span((a, _)) => a,
-    };
-    let from = skip_blank(text, from.min(text.len()));
+    let from = skip_blank(text, super::offset(e).min(text.len()));
     let found = &text[from..];
     let len = word_length(found);
     let expected = expected(e);
-    if let Some(d) = never_closed(file, at, text, from) {
+    if let Some(d) = never_closed(file, at, text, from).or_else(|| misread(file, at, text, from, &expected)) {
         return d;
     }
     let title = if found.trim().is_empty() {
         "the text ends in the middle of something".to_string()
     } else {
-        format!("`{}` cannot stand here", found[..len].escape_debug())
+        format!("`{}` cannot stand here", found[..len].escape_debug().to_string().replace("\\'", "'"))
     };
     let label = match &expected[..expected.len().min(8)] {
         [] => "unexpected".to_string(),
@@ -68,6 +64,36 @@ fn never_closed(file: u32, at: usize, text: &str, from: usize) -> Option<Diagnos
     })
 }
 
+/// The error for a line whose last words were read as the beginning of an entry, `role name = model(…)`, which
+/// shows only at the line behind it.
+fn misread(file: u32, at: usize, text: &str, from: usize, expected: &[String]) -> Option<Diagnostic> {
+    let before = text[..from].trim_end();
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let start = before.trim_end_matches(is_word).len();
+    if start == before.len()
+        || !text[before.len()..from].contains('\n')
+        || !expected.iter().any(|e| e == "count")
+    {
+        return None;
+    }
+    let line = before[before.rfind('\n').map_or(0, |i| i + 1)..].trim_start();
+    let word = &before[start..];
+    let d = |title: String, label| {
+        Diagnostic::error(code::SYNTAX, title).at(Span::new(file, at + start, at + before.len()), label)
+    };
+    Some(if line.starts_with("expect ") {
+        d(format!("`{word}` cannot stand here"), "unexpected").hint(
+            "an expectation is `never …`, `always …`, `eventually …` or a condition that is asked at the end",
+        )
+    } else {
+        d(
+            format!("`{word}` is not the end of this"),
+            "something is missing behind it, or this belongs elsewhere",
+        )
+        .hint("an entry is written `role name = model(…)`; see the construct's grammar in docs/language.md")
+    })
+}
+
 fn skip_blank(text: &str, mut from: usize) -> usize {
     while !text.is_char_boundary(from) {
         from -= 1;
@@ -99,7 +125,7 @@ fn expected(e: &Error<Rule>) -> Vec<String> {
             Rule::type_ref | Rule::type_name | Rule::inline_enum | Rule::service_type => "a type".into(),
             Rule::stmt | Rule::body | Rule::block => "a statement".into(),
             Rule::entry => "an entry like `role name = model(…)`".into(),
-            Rule::item | Rule::mission => "an item such as `mission` or `agent`".into(),
+            Rule::item | Rule::item_alone | Rule::mission => "an item such as `mission` or `agent`".into(),
             r => {
                 let name = format!("{r:?}");
                 match name.strip_prefix("K_") {

@@ -9,7 +9,7 @@ mod message;
 mod nesting;
 
 use crate::{ast, code};
-use pest::Parser as _;
+use pest::{Parser as _, error::InputLocation};
 use soifra_graph::{Diagnostic, Span};
 
 pub(crate) use expr::infix_power;
@@ -85,7 +85,10 @@ impl Builder {
                     let n = self.int(&mut c);
                     tree.edition = Some((n, span));
                 }
-                Rule::import => tree.imports.push(self.import(pair)),
+                Rule::import => {
+                    before = None;
+                    tree.imports.push(self.import(pair));
+                }
                 Rule::item => {
                     let place = (pair.as_span().start(), end(&pair));
                     before = None;
@@ -101,6 +104,7 @@ impl Builder {
                     // What follows on the line of an item is the rest of it: it was not understood whole.
                     if let Some((start, end)) = before.take()
                         && !text[end..from].contains('\n')
+                        && Grammar::parse(Rule::ITEM_START, &text[from..]).is_err()
                     {
                         tree.items.pop();
                         from = start;
@@ -115,7 +119,10 @@ impl Builder {
     /// Something between items that is none: parsed again by itself, for pest's own error.
     fn junk(&mut self, text: &str, at: usize, tree: &mut ast::File) {
         tree.unread.push(Span::new(self.file, at, at + text.len()));
-        let e = match Grammar::parse(Rule::item_alone, text) {
+        // A damaged import is explained as one, a whole one stands in the wrong place.
+        let import = Grammar::parse(Rule::K_IMPORT, text).and_then(|_| Grammar::parse(Rule::import, text));
+        let damaged = import.err().filter(|e| text[..offset(e)].contains(char::is_alphabetic));
+        let e = match damaged.map_or_else(|| Grammar::parse(Rule::item_alone, text), Err) {
             Err(e) => message::syntax(self.file, at, text, &e),
             // Readable alone but not where it stands: an edition or import after the items, say.
             Ok(_) => Diagnostic::error(code::SYNTAX, "this cannot stand here")
@@ -161,6 +168,14 @@ impl Builder {
             );
             0
         })
+    }
+}
+
+/// Where an error is.
+pub(crate) fn offset(e: &pest::error::Error<Rule>) -> usize {
+    match e.location {
+        InputLocation::Pos(p) => p,
+        InputLocation::Span((a, _)) => a,
     }
 }
 

@@ -122,8 +122,12 @@ impl Checker<'_> {
             let value = match slot {
                 Some(g) => {
                     let want = p.pattern.instantiate(&bindings).or_else(|| open(&p.pattern, &bindings));
-                    let want = want.or_else(|| self.written_vector(&p.pattern, &bindings, &g));
-                    let e = self.value(g, want.as_ref())?;
+                    let is_tuple =
+                        matches!(&g, Given::Written(a) if matches!(&*a.value.kind, ExprKind::Tuple(_)));
+                    let mut e = self.value(g, want.as_ref())?;
+                    if is_tuple && want.is_none() {
+                        e.ty = written_vector(&e, &p.pattern, &bindings).unwrap_or(e.ty);
+                    }
                     self.fit_pattern(e, &p.pattern, &mut bindings, f, &p.name, &form)?
                 }
                 None => match &p.default {
@@ -158,16 +162,6 @@ impl Checker<'_> {
             out.push((p.name.clone(), value));
         }
         Some((out, bindings))
-    }
-
-    /// The type a tuple has as a vector of any dimension: that of its first part.
-    fn written_vector(&mut self, pattern: &Pattern, bindings: &Bindings, g: &Given<'_>) -> Option<Type> {
-        let (Pattern::Vector(_, DimPattern::Var(dim)), Given::Written(a)) = (pattern, g) else { return None };
-        let ExprKind::Tuple(items) = &*a.value.kind else { return None };
-        let first = self.expr(items.first()?, None)?;
-        let mut b = any_frame(bindings);
-        b.dims.insert(dim.clone(), typing::number(&first.ty)?);
-        pattern.instantiate(&b)
     }
 
     fn fit_pattern(
@@ -348,4 +342,12 @@ fn any_frame(bindings: &Bindings) -> Bindings {
         b.frames.entry(v.into()).or_insert_with(soifra_graph::Frame::map);
     }
     b
+}
+
+/// The type that a tuple, which is of no frame, has as a vector of any dimension.
+fn written_vector(e: &GExpr, pattern: &Pattern, bindings: &Bindings) -> Option<Type> {
+    let (Pattern::Vector(_, DimPattern::Var(dim)), Op::MakeVector) = (pattern, &e.op) else { return None };
+    let mut b = any_frame(bindings);
+    b.dims.insert(dim.clone(), typing::number(&e.args.first()?.ty)?);
+    pattern.instantiate(&b)
 }

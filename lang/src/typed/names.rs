@@ -7,6 +7,9 @@ use soifra_graph::{
     Type, Value,
 };
 
+/// What a robot knows of itself.
+const OWN: [&str; 5] = ["index", "start", "target", "radius", "height"];
+
 /// Most expression nodes that the constants of a program may be written out to.
 const MAX_WRITTEN_OUT: usize = 4_000_000;
 
@@ -48,6 +51,19 @@ impl<'a> Checker<'a> {
         }
         if let Some(e) = self.fact(name, span) {
             return e;
+        }
+        if self.robots.position(name).is_some() {
+            self.report(
+                Diagnostic::error(code::UNKNOWN_NAME, format!("the robot `{name}` is no value"))
+                    .at(span, "what of it?")
+                    .hint(match self.body.place {
+                        Place::Truth => {
+                            format!("write `{name}.truth.position`, or a state `{name}.AGENT.STATE`")
+                        }
+                        _ => "an agent knows other robots by what they publish on a topic".to_string(),
+                    }),
+            );
+            return None;
         }
         let known = self.known_names();
         let d = unknown(code::UNKNOWN_NAME, "value", name, span, known.iter().map(String::as_str));
@@ -248,18 +264,36 @@ impl<'a> Checker<'a> {
         );
     }
 
+    /// Whether something nearer than the mission's robots and agents has this name.
+    fn is_bound(&self, name: &Name) -> bool {
+        let b = &self.body;
+        let a = &self.agent;
+        b.scope.iter().any(|(n, _, _)| n == name)
+            || b.data.iter().any(|(n, _, _)| n == name)
+            || (matches!(b.place, Place::Behaviour | Place::Belief)
+                && (a.states.iter().any(|(n, _, _)| n == name)
+                    || a.params.iter().any(|(n, _)| n == name)
+                    || a.sensors.iter().any(|(n, _, _)| n == name)
+                    || a.lets.contains_key(name)))
+    }
+
     /// `robot.field`, `truth.field`, `r1.truth.field`, `agent.state`, `Enum.variant`; `None` when `on` is
     /// none of these.
     pub fn qualified(&mut self, on: &Expr, field: &Ident, span: Span) -> Option<Option<GExpr>> {
         if let ExprKind::Field(robot, middle) = &*on.kind {
             let ExprKind::Name(robot) = &*robot.kind else { return None };
+            if self.is_bound(robot) {
+                return None;
+            }
             let subject = self.subject(robot, on.span)?;
+            // A part of a fact, as `robot.target.x`: the fact is a value of its own.
+            if OWN.contains(&&*middle.name) && self.agents.position(&middle.name).is_none() {
+                return None;
+            }
             return Some(self.of_subject(subject, &middle.name, field, span));
         }
         let ExprKind::Name(first) = &*on.kind else { return None };
-        if self.body.scope.iter().any(|(n, _, _)| n == first)
-            || self.body.data.iter().any(|(n, _, _)| n == first)
-        {
+        if self.is_bound(first) {
             return None;
         }
         if let Some(e) = self.types.enums.get(first) {
@@ -357,13 +391,7 @@ impl<'a> Checker<'a> {
             "radius" => (Own::Radius, Type::Quantity(Dim::LENGTH)),
             "height" => (Own::Height, Type::Quantity(Dim::LENGTH)),
             other => {
-                let d = unknown(
-                    code::UNKNOWN_FIELD,
-                    "fact about a robot",
-                    other,
-                    field.span,
-                    ["index", "start", "target", "radius", "height"],
-                );
+                let d = unknown(code::UNKNOWN_FIELD, "fact about a robot", other, field.span, OWN);
                 self.report(d);
                 return None;
             }

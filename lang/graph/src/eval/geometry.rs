@@ -30,10 +30,14 @@ pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// `v` at length one; the zero vector stays.
+/// `v` at length one; the zero vector stays. Not finite when the length of `v` is not.
 pub(super) fn unit(v: [f64; 3]) -> [f64; 3] {
     let n = norm(v);
-    if n == 0.0 { v } else { v.map(|x| x / n) }
+    match n {
+        0.0 => v,
+        n if n.is_finite() => v.map(|x| x / n),
+        n => [n; 3],
+    }
 }
 
 /// The level vector of a length and a heading.
