@@ -35,12 +35,14 @@ pub const MAX_CHAIN: usize = 256;
 /// What the builders share: the file they build and the errors they found.
 pub(crate) struct Builder {
     pub file: u32,
+    /// Where the piece begins that is read now.
+    base: usize,
     pub errors: Vec<Diagnostic>,
 }
 
 /// Parses source number `file`: the tree of everything readable, and all errors.
 pub fn parse(file: u32, text: &str) -> (ast::File, Vec<Diagnostic>) {
-    let mut b = Builder { file, errors: Vec::new() };
+    let mut b = Builder { file, base: 0, errors: Vec::new() };
     let mut tree = ast::File::default();
     if let Err(at) = nesting::check(text) {
         let d = Diagnostic::error(code::NESTING, format!("brackets nest deeper than {MAX_NESTING}"));
@@ -50,14 +52,7 @@ pub fn parse(file: u32, text: &str) -> (ast::File, Vec<Diagnostic>) {
         );
         return (tree, b.errors);
     }
-    match Grammar::parse(Rule::file, text) {
-        Ok(mut pairs) => {
-            if let Some(root) = pairs.next() {
-                b.file(root, &mut tree);
-            }
-        }
-        Err(e) => b.errors.push(message::syntax(file, 0, text, &e)),
-    }
+    b.file(text, &mut tree);
     (tree, b.errors)
 }
 
@@ -74,9 +69,26 @@ pub(crate) fn tree(text: &str) -> Option<pest::iterators::Pair<'_, Rule>> {
 }
 
 impl Builder {
-    fn file(&mut self, root: pest::iterators::Pair<'_, Rule>, tree: &mut ast::File) {
+    fn file(&mut self, text: &str, tree: &mut ast::File) {
+        let mut next = Rule::head;
         // Begin and end of the item before, when it is among the items.
-        let mut before: Option<(usize, usize)> = None;
+        let mut before = None;
+        // Behind the last piece there is nothing to read.
+        while let Some(root) = Grammar::parse(next, &text[self.base..]).ok().and_then(|mut p| p.next()) {
+            let length = root.as_span().end();
+            self.piece(text, root, &mut before, tree);
+            self.base += length;
+            next = Rule::piece;
+        }
+    }
+
+    fn piece(
+        &mut self,
+        text: &str,
+        root: pest::iterators::Pair<'_, Rule>,
+        before: &mut Option<(usize, usize)>,
+        tree: &mut ast::File,
+    ) {
         for pair in root.into_inner() {
             match pair.as_rule() {
                 Rule::edition => {
@@ -86,21 +98,21 @@ impl Builder {
                     tree.edition = Some((n, span));
                 }
                 Rule::import => {
-                    before = None;
+                    *before = None;
                     tree.imports.push(self.import(pair));
                 }
                 Rule::item => {
-                    let place = (pair.as_span().start(), end(&pair));
-                    before = None;
+                    let place = (self.base + pair.as_span().start(), self.base + end(&pair));
+                    *before = None;
                     if let Some(inner) = pair.into_inner().find(|p| p.as_rule() != Rule::COMMENT)
                         && let Some(item) = self.item(inner)
                     {
                         tree.items.push(item);
-                        before = Some(place);
+                        *before = Some(place);
                     }
                 }
                 Rule::junk => {
-                    let (text, mut from) = (pair.get_input(), pair.as_span().start());
+                    let mut from = self.base + pair.as_span().start();
                     // What follows on the line of an item is the rest of it: it was not understood whole.
                     if let Some((start, end)) = before.take()
                         && !text[end..from].contains('\n')
@@ -109,7 +121,7 @@ impl Builder {
                         tree.items.pop();
                         from = start;
                     }
-                    self.junk(&text[from..pair.as_span().end()], from, tree);
+                    self.junk(&text[from..self.base + pair.as_span().end()], from, tree);
                 }
                 _ => {}
             }
@@ -132,7 +144,7 @@ impl Builder {
     }
 
     pub fn span(&self, pair: &pest::iterators::Pair<'_, Rule>) -> Span {
-        Span::new(self.file, pair.as_span().start(), end(pair))
+        Span::new(self.file, self.base + pair.as_span().start(), self.base + end(pair))
     }
 
     pub fn ident(&mut self, c: &mut Cursor<'_>) -> ast::Ident {

@@ -214,6 +214,8 @@ const IN_WORDS: &[&str] = &[
     "gap",
     "junk",
     "item_alone",
+    "head",
+    "piece",
     "ITEM_START",
     "tokens",
     "token",
