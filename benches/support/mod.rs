@@ -83,8 +83,7 @@ pub fn verdict(name: &str, what: &str, ratio: f64, bar: Option<f64>) {
         _ => "no bar".into(),
     };
     println!("{name}: {ratio:.3} ({what}; {words})");
-    let folder = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo tells the folder"))
-        .join("out/bench");
+    let folder = PathBuf::from(project("out/bench"));
     let text = serde_json::to_string_pretty(&Verdict { name, what, ratio, bar, held }).unwrap_or_default();
     let written = std::fs::create_dir_all(&folder)
         .and_then(|()| std::fs::write(folder.join(format!("{name}.json")), text + "\n"));

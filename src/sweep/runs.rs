@@ -19,8 +19,9 @@ struct Job {
     seed: u64,
 }
 
-/// Runs `plan` on the mission of that name, else on the file's first, or the part of it that `shard` names, on `threads` threads. Everything that can be
-/// refused is refused before the first run starts. The second value is the worst run's exit code.
+/// Runs `plan`, or the part of it that `shard` names, on `threads` threads; `mission` is one of the file's, its first
+/// when absent. Everything that can be refused is refused before the first run starts. The second value is the worst
+/// run's exit code.
 pub fn execute(
     file: &str,
     mission: Option<&str>,

@@ -1,9 +1,11 @@
 //! Can every constant of behaviours and conditions be computed? `1 / 0` would fail at the first
 //! activation; it can be told before.
 
-use super::{constants::Constants, walk};
-use crate::code;
-use soifra_graph::{Binary, Diagnostic, Expr, Graph, Op, eval::Fault};
+use super::{
+    constants::{Constants, not_computable},
+    walk,
+};
+use soifra_graph::{Binary, Diagnostic, Expr, Graph, Op};
 
 /// Evaluates the largest parts of expressions that depend on nothing.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -37,12 +39,8 @@ impl Search<'_> {
         }
         e.walk(&mut |_| self.skip += 1);
         self.skip -= 1;
-        if let Err(Fault { kind, at }) = self.known.evaluate(e, 0) {
-            self.out.push(
-                Diagnostic::error(code::NOT_FINITE, format!("this constant cannot be computed: {kind}"))
-                    .at(at, "here")
-                    .hint("change the operands so that the result is a finite number"),
-            );
+        if let Err(fault) = self.known.evaluate(e, 0) {
+            self.out.push(not_computable(&fault));
         }
     }
 }

@@ -1,9 +1,17 @@
 //! Values that are known before a run, for checks that need them.
 
+use crate::code;
 use soifra_graph::{
-    Expr, Graph, Texts, Type, Value,
+    Diagnostic, Expr, Graph, Texts, Type, Value,
     eval::{self, Fault, FaultKind, Parameters},
 };
+
+/// The error for a constant that has no value.
+pub fn not_computable(fault: &Fault) -> Diagnostic {
+    Diagnostic::error(code::NOT_FINITE, format!("this constant cannot be computed: {fault}"))
+        .at(fault.at, "here")
+        .hint("change the operands so that the result is a finite number")
+}
 
 /// Evaluates expressions with parameters at their defaults.
 pub struct Constants<'a> {

@@ -23,6 +23,7 @@ mod topics;
 mod types;
 pub mod walk;
 
+pub(crate) use constants::not_computable;
 pub(crate) use ranges::wrong_period;
 
 use soifra_graph::{Diagnostic, Graph};

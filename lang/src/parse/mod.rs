@@ -132,8 +132,8 @@ impl Builder {
     fn junk(&mut self, text: &str, at: usize, tree: &mut ast::File) {
         tree.unread.push(Span::new(self.file, at, at + text.len()));
         // A damaged import is explained as one, a whole one stands in the wrong place.
-        let import = Grammar::parse(Rule::K_IMPORT, text).and_then(|_| Grammar::parse(Rule::import, text));
-        let damaged = import.err().filter(|e| text[..offset(e)].contains(char::is_alphabetic));
+        let is_import = Grammar::parse(Rule::K_IMPORT, text).is_ok();
+        let damaged = is_import.then(|| Grammar::parse(Rule::import, text).err()).flatten();
         let e = match damaged.map_or_else(|| Grammar::parse(Rule::item_alone, text), Err) {
             Err(e) => message::syntax(self.file, at, text, &e),
             // Readable alone but not where it stands: an edition or import after the items, say.

@@ -311,11 +311,7 @@ impl<'a> Checker<'a> {
         match soifra_graph::eval::constant(e, &known, &mut self.texts) {
             Ok(v) => Some(v),
             Err(fault) => {
-                self.report(
-                    Diagnostic::error(code::NOT_FINITE, format!("this constant cannot be computed: {fault}"))
-                        .at(fault.at, "here")
-                        .hint("change the operands so that the result is a finite number"),
-                );
+                self.report(crate::check::not_computable(&fault));
                 None
             }
         }
