@@ -29,6 +29,9 @@ pub struct Checked {
     pub tests: Vec<TestCase>,
 }
 
+/// Missions and their timing.
+pub type Timings = Vec<(String, soifra_lang::schedule::Timing)>;
+
 /// Compiles or loads a file that must hold a mission; `platform` replaces the platform of every robot.
 pub fn compile(path: &str, platform: Option<&str>) -> Result<Compiled, Refusal> {
     compile_mission(path, platform, None)
@@ -63,18 +66,27 @@ pub fn compile_mission(
 
 /// Checks a file that may be without a mission.
 pub fn check(path: &str, platform: Option<&str>, mission: Option<&str>) -> Result<Checked, Refusal> {
+    let options = CheckOptions {
+        platform: platform.map(str::to_string),
+        mission: mission.map(str::to_string),
+        timing: false,
+    };
+    check_with(path, &options, &mut Vec::new())
+}
+
+/// As [`check`]. When the timing is asked for, `timings` gets that of missions that cannot be run, too.
+pub fn check_with(path: &str, options: &CheckOptions, timings: &mut Timings) -> Result<Checked, Refusal> {
     let text = files::read_text(path)?;
     if graph_file::is_graph(path) {
-        return load(path, &text, platform);
+        return load(path, &text, options, timings);
     }
     if text.trim().is_empty() {
         let hint =
             "a mission begins with a line `mission NAME \"title\" {`; the tutorial has one to start from";
         return Err(Refusal::about(path, "S0701", "there is no mission in this file", "it is empty", hint));
     }
-    let options =
-        CheckOptions { platform: platform.map(str::to_string), mission: mission.map(str::to_string) };
-    let mut checked = soifra_lang::check(path, &text, &mut files::Loader, &options);
+    let mut checked = soifra_lang::check(path, &text, &mut files::Loader, options);
+    *timings = std::mem::take(&mut checked.timings);
     if let Some(graph) = &mut checked.graph {
         relative::name_from(path, &mut graph.sources);
     }
@@ -85,9 +97,9 @@ pub fn check(path: &str, platform: Option<&str>, mission: Option<&str>) -> Resul
     Ok(Checked { graph: checked.graph, missions: checked.missions, findings, tests: checked.tests })
 }
 
-fn load(path: &str, text: &str, platform: Option<&str>) -> Result<Checked, Refusal> {
+fn load(path: &str, text: &str, options: &CheckOptions, timings: &mut Timings) -> Result<Checked, Refusal> {
     let graph = graph_file::parse(path, text)?;
-    if let Some(p) = platform {
+    if let Some(p) = &options.platform {
         return Err(Refusal::about(
             path,
             "S9009",
@@ -95,6 +107,9 @@ fn load(path: &str, text: &str, platform: Option<&str>) -> Result<Checked, Refus
             format!("`--platform {p}` cannot change them"),
             "run the source instead, or make a graph with `soifra graph MISSION --platform NAME`",
         ));
+    }
+    if options.timing {
+        timings.extend(soifra_lang::schedule::of_graph(&graph).map(|t| (graph.name.to_string(), t)));
     }
     let findings = Findings { diagnostics: soifra_lang::verify(&graph), sources: graph.sources.clone() };
     if findings.errors() > 0 {

@@ -7,4 +7,5 @@ mod fuzz;
 mod missions;
 mod structure;
 mod support;
+mod timing;
 mod trace;

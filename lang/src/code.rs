@@ -43,6 +43,7 @@ codes! {
     UNKNOWN_MODEL = "S0406", "Unknown model or role";
     INCOMPLETE_PLATFORM = "S0407", "A platform lacks a part";
     NO_STEP_CLOCK = "S0408", "Something needs a step clock";
+    NO_PLACE = "S0409", "A host is nowhere";
 
     SEVERAL_WRITERS = "S0501", "Several units command one actuator without an arbiter";
     UNREACHABLE_STATE = "S0502", "A state that cannot be reached";
@@ -57,6 +58,10 @@ codes! {
     TIMING = "S0511", "Declared timing contradicts itself";
     NO_EFFECT = "S0512", "A unit without effect";
     FULL_LIST = "S0513", "An item for a list that is full";
+    ANYTIME = "S0514", "Anytime work that cannot be paid for";
+    LATE = "S0515", "A deadline that can be missed";
+    OVERLOAD = "S0516", "A core that cannot keep up";
+    UNLIMITED = "S0517", "A load without a limit";
 
     TRUTH = "S0601", "Truth in a behaviour";
     FRAMES = "S0602", "Frames are mixed";

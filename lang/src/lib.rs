@@ -11,6 +11,7 @@ pub mod format;
 mod lower;
 mod modules;
 pub mod parse;
+pub mod schedule;
 mod test_case;
 mod typed;
 mod unseen;
@@ -38,6 +39,8 @@ pub struct Checked {
     pub sources: Vec<Source>,
     /// The file's tests.
     pub tests: Vec<TestCase>,
+    /// The timing of each mission, when it was asked for; also of one that cannot be run.
+    pub timings: Vec<(String, schedule::Timing)>,
 }
 
 /// How to check.
@@ -47,6 +50,8 @@ pub struct CheckOptions {
     pub platform: Option<String>,
     /// Which mission, when the program has several; else the root file's first.
     pub mission: Option<String>,
+    /// Whether the timing is wanted.
+    pub timing: bool,
 }
 
 /// Checks the file `path` with text `text` and everything it imports.
@@ -63,8 +68,21 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         && !decls.missions.iter().any(|(_, m)| *m.name.name == **name)
     {
         let sources = std::mem::take(&mut program.sources);
-        return Checked { graph: None, missions, diagnostics, sources, tests: Vec::new() };
+        return Checked {
+            graph: None,
+            missions,
+            diagnostics,
+            sources,
+            tests: Vec::new(),
+            timings: Vec::new(),
+        };
     }
+    let mut timings = Vec::new();
+    let mut time = |g: &Graph| {
+        if options.timing {
+            timings.extend(schedule::of_graph(g).map(|t| (g.name.to_string(), t)));
+        }
+    };
     let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let unseen = unseen::Unseen::of(&program, &diagnostics);
     let mut later = Vec::new();
@@ -81,6 +99,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     }
     diagnostics.append(&mut later);
     if let Some(g) = &graph {
+        time(g);
         diagnostics.extend(verify(g));
         if options.platform.is_none() {
             let others = alternatives(&program, &decls, &choice, g, &diagnostics);
@@ -92,6 +111,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
             let choice = lower::Choice { mission: Some(name.clone()), ..choice.clone() };
             let mut here = Vec::new();
             if let Some(g) = lower::lower(&program, &decls, &choice, &mut here) {
+                time(&g);
                 here.extend(verify(&g));
                 here.extend(alternatives(&program, &decls, &choice, &g, &here));
             }
@@ -106,7 +126,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         graph = None;
     }
     let sources = std::mem::take(&mut program.sources);
-    Checked { graph, missions, diagnostics, sources, tests }
+    Checked { graph, missions, diagnostics, sources, tests, timings }
 }
 
 /// What is wrong only when robots are what `any of […]` names after the first.

@@ -17,7 +17,7 @@ pub struct Scene {
     pub world: Vec<Part>,
     /// Platforms, by index.
     pub platforms: Vec<PlatformScene>,
-    /// Robots; groups are expanded.
+    /// Robots, then hosts; groups are expanded.
     pub robots: Vec<RobotScene>,
 }
 
@@ -52,7 +52,7 @@ impl PlatformScene {
     }
 }
 
-/// A robot.
+/// A robot, or a host.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobotScene {
     /// Name; members of arrays are `swarm[3]`.
@@ -69,6 +69,16 @@ pub struct RobotScene {
     pub target: Option<[f64; 3]>,
     /// Which of its platform's sensors somebody reads, by sensor index; others need not be simulated.
     pub consumed: Vec<bool>,
+    /// A host: it has no body. Hosts come after robots.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub host: bool,
+}
+
+impl Scene {
+    /// Robots with a body.
+    pub fn bodies(&self) -> &[RobotScene] {
+        &self.robots[..self.robots.partition_point(|r| !r.host)]
+    }
 }
 
 impl Part {

@@ -4,10 +4,14 @@ use crate::{
     compile,
     exit::Exit,
     output::{self, Format},
-    report::{JsonDiagnostic, Refusal},
+    report::{
+        JsonDiagnostic, Refusal,
+        timing::{JsonTiming, timing},
+    },
 };
 use clap::{Args, ValueEnum, ValueHint};
 use serde::Serialize;
+use soifra_lang::CheckOptions;
 
 /// Arguments.
 #[derive(Debug, Args)]
@@ -21,6 +25,9 @@ pub struct Arguments {
     /// Make these findings count as errors
     #[arg(long, value_enum, value_name = "WHAT")]
     deny: Option<Deny>,
+    /// Print what is asked of each core, and the longest response times
+    #[arg(long)]
+    timing: bool,
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -51,6 +58,8 @@ struct File {
     graph_digest: Option<String>,
     errors: usize,
     warnings: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timing: Option<Vec<JsonTiming>>,
 }
 
 /// Runs the command.
@@ -63,8 +72,11 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         files: Vec::new(),
         diagnostics: Vec::new(),
     };
+    let mut tables: Vec<String> = Vec::new();
     for path in &a.files {
-        let (findings, sound, graph, missions) = match compile::check(path, a.platform.as_deref(), None) {
+        let options = CheckOptions { platform: a.platform.clone(), mission: None, timing: a.timing };
+        let mut timings = Vec::new();
+        let (findings, sound, graph, missions) = match compile::check_with(path, &options, &mut timings) {
             Ok(c) => (c.findings, true, c.graph, c.missions),
             Err(r) => (r.findings, false, None, Vec::new()),
         };
@@ -86,7 +98,9 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             graph_digest: digest,
             errors,
             warnings,
+            timing: a.timing.then(|| timings.iter().map(|(m, t)| JsonTiming::new(m, t)).collect()),
         });
+        tables.extend(timings.iter().map(|(m, t)| timing(m, t)));
     }
     let denied = a.deny == Some(Deny::Warnings) && document.warnings > 0;
     let refused = denied || document.files.iter().any(|f| !f.sound);
@@ -95,8 +109,8 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     }
     match a.format {
         Format::Json => output::print_json(&document)?,
-        Format::Human if !refused => output::print(&passed(&document))?,
-        Format::Human => {}
+        Format::Human if !refused => output::print(&format!("{}{}", passed(&document), tables.concat()))?,
+        Format::Human => output::print(&tables.concat())?,
     }
     Ok(if refused { Exit::WrongInput } else { Exit::Success })
 }

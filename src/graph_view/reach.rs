@@ -82,6 +82,9 @@ impl Reach {
                 self.publishes.insert(*topic);
                 self.expr(e);
             }
+            StmtKind::Refine(r) => {
+                [&r.first, &r.step].into_iter().chain(&r.until).for_each(|e| self.expr(e));
+            }
             StmtKind::Tell { performative, to, content } => {
                 self.tells.insert((performative.to_string(), to.to_string(), content.ty.to_string()));
                 self.expr(content);

@@ -24,13 +24,13 @@ type Entry = (fn(&mut Drawing, [f64; 2]), &'static str);
 fn entries(scene: &Scene) -> Vec<Entry> {
     let has = |role: &str| scene.header.scene.world.iter().any(|p| &*p.role == role);
     let mut entries: Vec<Entry> = Vec::new();
-    if !scene.header.scene.robots.is_empty() {
+    if !scene.header.scene.bodies().is_empty() {
         entries.push((|d, at| world::start(d, at, 1.0, MILD), "start"));
     }
     if !scene.tracks.robots.is_empty() {
         entries.push((|d, at| world::body(d, at, 6.0, 0.0, MILD), "end, with heading"));
     }
-    if scene.header.scene.robots.iter().any(|r| r.target.is_some()) {
+    if scene.header.scene.bodies().iter().any(|r| r.target.is_some()) {
         entries.push((|d, at| world::target(d, at, 1.0, MILD), "target"));
     }
     if !scene.tracks.movers.is_empty() {
@@ -65,7 +65,7 @@ fn entries(scene: &Scene) -> Vec<Entry> {
 }
 
 fn robot_rows(scene: &Scene) -> usize {
-    let robots = scene.header.scene.robots.len();
+    let robots = scene.header.scene.bodies().len();
     if robots > NAMED { NAMED + 1 } else { robots }
 }
 
@@ -79,7 +79,7 @@ pub(super) fn draw(drawing: &mut Drawing, scene: &Scene) {
     let room = RIGHT - SPACE - INDENT - 10.0;
     let mut y = TOP + 10.0;
     let base = |y: f64| [left + INDENT, y + SMALL.size / 2.0];
-    let robots = &scene.header.scene.robots;
+    let robots = scene.header.scene.bodies();
     let named = if robots.len() > NAMED { NAMED } else { robots.len() };
     for (i, robot) in robots.iter().take(named).enumerate() {
         let color = palette::robot(i);

@@ -71,7 +71,7 @@ fn extent(header: &Header, tracks: &Tracks) -> Extent {
             shape::Shape::Box { .. } => world::corners(&shape).into_iter().for_each(|c| extent.take(c, 0.0)),
         }
     }
-    for (i, robot) in header.scene.robots.iter().enumerate() {
+    for (i, robot) in header.scene.bodies().iter().enumerate() {
         let radius = shape::robot_body(&header.scene, i).radius;
         extent.take([robot.start[0], robot.start[1]], radius);
         if let Some(target) = robot.target {

@@ -114,7 +114,7 @@ pub(super) fn movers(drawing: &mut Drawing, scene: &Scene) {
 
 /// Paths below, then starts and targets, then bodies, through which a reached target shows.
 pub(super) fn robots(drawing: &mut Drawing, scene: &Scene) {
-    let (view, robots) = (&scene.view, &scene.header.scene.robots);
+    let (view, robots) = (&scene.view, scene.header.scene.bodies());
     // Many robots are drawn finer.
     let grain = if robots.len() > 60 { 0.5 } else { 1.0 };
     for (i, track) in &scene.tracks.robots {

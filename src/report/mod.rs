@@ -2,6 +2,7 @@
 
 mod excerpt;
 pub mod table;
+pub mod timing;
 
 use crate::{exit::Exit, output};
 use excerpt::Excerpt;

@@ -23,7 +23,8 @@ pub fn figure(x: Option<f64>) -> String {
     match x {
         None => "–".into(),
         Some(x) if !x.is_finite() => "–".into(),
-        Some(x) if x == x.trunc() && x.abs() < 1e9 => format!("{x:.0}"),
+        // Nobody is left by minus nothing.
+        Some(x) if x == x.trunc() && x.abs() < 1e9 => format!("{:.0}", x + 0.0),
         Some(x) if x.abs() >= 100.0 => format!("{x:.1}"),
         Some(x) if x.abs() >= 1e-3 => format!("{x:.4}"),
         Some(x) => format!("{x:.2e}"),

@@ -43,7 +43,7 @@ impl Header {
 
     /// The robots, by index.
     pub fn robots(&self) -> impl Iterator<Item = Robot<'_>> {
-        self.scene.robots.iter().enumerate().map(|(i, r)| Robot {
+        self.scene.bodies().iter().enumerate().map(|(i, r)| Robot {
             name: &r.name,
             platform: self.scene.platforms.get(r.platform as usize).map_or("", |p| &*p.name),
             radius: shape::robot_body(&self.scene, i).radius,

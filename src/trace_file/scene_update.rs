@@ -118,7 +118,7 @@ impl SceneUpdate {
             }
         }
         let mut targets = Entity::new("map", "targets".into());
-        for (i, robot) in scene.robots.iter().enumerate() {
+        for (i, robot) in scene.bodies().iter().enumerate() {
             let (body, color) = (shape::robot_body(scene, i), palette::robot(i));
             let mut entity = Entity::new(&robot_frame(&robot.name), robot.name.clone());
             entity = entity.with(&upright(body), rgba(color, 0.9));

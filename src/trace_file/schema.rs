@@ -49,7 +49,7 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
             ("unit", "text"),
             ("release", "time"),
             ("start", "time"),
-            ("finish", "time"),
+            ("finish", "time?"),
             ("skipped", "text?"),
         ],
     ),
@@ -108,6 +108,23 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
     ("expectation", &[("index", "index"), ("robot", "index?"), ("held", "bool"), ("margin", "number?")]),
     ("fault", &[("robot", "index?"), ("agent", "text"), ("text", "text")]),
     ("end", &[("outcome", "text"), ("reason", "text")]),
+    ("deferral", &[("robot", "index"), ("agent", "text"), ("unit", "text"), ("until", "time")]),
+    ("switch", &[("robot", "index"), ("core", "index"), ("agent", "text?"), ("unit", "text?")]),
+    (
+        "completion",
+        &[
+            ("robot", "index"),
+            ("agent", "text"),
+            ("unit", "text"),
+            ("release", "time"),
+            ("start", "time"),
+            ("rounds", "index?"),
+        ],
+    ),
+    (
+        "miss",
+        &[("robot", "index"), ("agent", "text"), ("unit", "text"), ("release", "time"), ("deadline", "time")],
+    ),
 ];
 
 /// Place of an event's kind in [`KINDS`].
@@ -133,6 +150,10 @@ pub(crate) fn kind(event: &Event) -> usize {
         Event::Expectation { .. } => 17,
         Event::Fault { .. } => 18,
         Event::End { .. } => 19,
+        Event::Deferral { .. } => 20,
+        Event::Switch { .. } => 21,
+        Event::Completion { .. } => 22,
+        Event::Miss { .. } => 23,
     }
 }
 

@@ -74,6 +74,7 @@ pub fn scene() -> Scene {
         start: pose(start.0, start.1, 0.0),
         target: Some([target.0, target.1, 0.0]),
         consumed: vec![true],
+        host: false,
     };
     Scene {
         seed: 7,
@@ -129,7 +130,7 @@ pub fn every_kind() -> Vec<Event> {
             unit: "step".into(),
             release: Time(1),
             start: Time(2),
-            finish: Time(3),
+            finish: Some(Time(3)),
             skipped: Some(text()),
         },
         Event::Rule { robot: 0, agent: agent(), unit: "step".into(), rule: 2, guard: text() },

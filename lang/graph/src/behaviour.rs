@@ -154,9 +154,21 @@ pub struct Timing {
     /// Relative deadline.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deadline: Option<Expr>,
-    /// Worst-case execution time: outputs appear that long after the start.
+    /// What a missed deadline means.
+    #[serde(default, skip_serializing_if = "Misses::is_hard")]
+    pub misses: Misses,
+    /// Worst-case execution time, which is charged unless `takes` says less.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst_case: Option<Expr>,
+    /// Execution time that is charged: a distribution, cut off at the worst case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub takes: Option<Expr>,
+    /// A periodic release may come so much later than its period says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jitter: Option<Expr>,
+    /// Resources that are held at the beginning of the execution, one after the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shares: Vec<Share>,
     /// Least time between two releases of a unit that is not periodic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_most_every: Option<Expr>,
@@ -166,9 +178,39 @@ pub struct Timing {
     /// Core it is bound to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub core: Option<i64>,
-    /// Budget of an anytime service.
+    /// Budget of an anytime service: time for the rounds of its `refine`, besides `worst_case`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub budget: Option<Expr>,
+}
+
+/// What a missed deadline means. Every miss is traced and counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Misses {
+    /// It must not happen: refused by the checker where it can.
+    #[default]
+    Hard,
+    /// It may happen.
+    Soft,
+    /// So many in a row may happen; one more is a fault of the agent.
+    AtMost(u32),
+}
+
+impl Misses {
+    fn is_hard(&self) -> bool {
+        *self == Misses::Hard
+    }
+}
+
+/// A resource that units of one robot share, one at a time (immediate priority ceiling).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// Its name: the same for all units of the robot.
+    pub resource: Name,
+    /// How long it is held at most.
+    pub time: Expr,
+    /// Where it was written.
+    pub at: Span,
 }
 
 /// A statement.
@@ -204,6 +246,8 @@ pub enum StmtKind {
     },
     /// Writes a remark into the trace.
     Note(String, Option<Expr>),
+    /// Improves a value round by round while the budget of the unit lasts; directly in a service only.
+    Refine(Box<Refine>),
     /// Raises an event of the agent.
     Raise(u32),
     /// Sets a mission parameter.
@@ -234,6 +278,21 @@ pub enum StmtKind {
     },
     /// The first rule whose guard holds acts; the trace says which.
     Rules(Vec<Rule>),
+}
+
+/// What an anytime service improves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refine {
+    /// Local for the value: the last round's, or the first value.
+    pub local: u32,
+    /// First value, always computed.
+    pub first: Expr,
+    /// Next value, from the local.
+    pub step: Expr,
+    /// What a round costs: a duration, constant at the start of a run.
+    pub cost: Expr,
+    /// Whether the value is good enough, from the local.
+    pub until: Option<Expr>,
 }
 
 /// A guarded rule. An empty guard always holds (`otherwise`).

@@ -87,6 +87,18 @@ pub enum Run {
     InCollision,
 }
 
+/// What is known of the executions of a unit. Readable where truth is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Execution {
+    /// Activations so far: `Int`.
+    Activations,
+    /// Deadlines missed so far: `Int`.
+    Misses,
+    /// Longest time from a release to its completion so far: `Duration`.
+    Response,
+}
+
 /// How a robot's answer of a quantified expression is combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -189,6 +201,9 @@ pub enum Op {
     Run(Run),
     /// A state of an agent of the robot in question: (agent, state). Readable where truth is.
     Believed(u32, u32),
+    /// What is known of the executions of a unit of the robot in question: (agent, unit, what). Readable where
+    /// truth is.
+    Executed(u32, u32, Execution),
     /// Whether a goal is achieved. Readable where truth is.
     Achieved(u32),
     /// Combines the argument over all robots.

@@ -24,7 +24,7 @@ pub mod value;
 pub use behaviour::*;
 pub use diagnostic::{Diagnostic, Label, Severity, did_you_mean};
 pub use dim::{Dim, Unit as QuantityUnit};
-pub use expr::{Binary, Expr, ListOp, Op, Own, Part, Quantifier, Run, Truth, UserFunction};
+pub use expr::{Binary, Execution, Expr, ListOp, Op, Own, Part, Quantifier, Run, Truth, UserFunction};
 pub use function::{FUNCTIONS, Function};
 pub use mission::*;
 pub use signature::Signature;

@@ -130,6 +130,9 @@ pub struct RobotGroup {
     pub target: Option<Expr>,
     /// Agents it runs.
     pub agents: Vec<AgentBinding>,
+    /// A computer without a body: its platform has no parts, and it is nowhere. Hosts come after robots.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub host: bool,
     /// Where it was written.
     pub at: Span,
 }
@@ -214,6 +217,11 @@ pub struct Metric {
 }
 
 impl Graph {
+    /// Robots with a body.
+    pub fn bodies(&self) -> impl Iterator<Item = &RobotGroup> {
+        self.robots.iter().filter(|r| !r.host)
+    }
+
     /// Label for a source of arbiter proposals: `agent.unit`.
     pub fn source_name(&self, s: &Source) -> String {
         let agent = self.agents.get(s.agent as usize);

@@ -135,3 +135,11 @@ pub fn parts_of(t: &Type) -> &'static [&'static str] {
         _ => &[],
     }
 }
+
+/// Type of what is known of the executions of a unit.
+pub fn execution(which: crate::Execution) -> Type {
+    match which {
+        crate::Execution::Activations | crate::Execution::Misses => Type::Int,
+        crate::Execution::Response => Type::Quantity(Dim::TIME),
+    }
+}

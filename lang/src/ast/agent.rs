@@ -1,7 +1,7 @@
 //! Agents and what they do.
 
 use super::{Arg, Constant, Expr, Ident, Stmt, TypeRef};
-use soifra_graph::Span;
+use soifra_graph::{Misses, Span};
 
 /// An agent.
 #[derive(Debug, Clone)]
@@ -109,10 +109,16 @@ pub enum TriggerKind {
 /// A timing clause.
 #[derive(Debug, Clone)]
 pub enum Timing {
-    /// `deadline`
-    Deadline(Expr),
+    /// `deadline`, with what a miss means
+    Deadline(Expr, Misses),
     /// `worst`
     Worst(Expr),
+    /// `takes`
+    Takes(Expr),
+    /// `jitter`
+    Jitter(Expr),
+    /// `shares … for`
+    Shares(Ident, Expr),
     /// `budget`
     Budget(Expr),
     /// `at most every`

@@ -17,6 +17,19 @@ pub struct Stmt {
 pub enum StmtKind {
     /// `let`
     Let(Ident, Expr),
+    /// `refine name = first by step cost c until u`
+    Refine {
+        /// What it binds.
+        name: Ident,
+        /// First value.
+        first: Expr,
+        /// Next value.
+        step: Expr,
+        /// Cost of a round.
+        cost: Expr,
+        /// Good enough.
+        until: Option<Expr>,
+    },
     /// `set`
     Set(Ident, Expr),
     /// `command`

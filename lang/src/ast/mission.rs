@@ -23,6 +23,8 @@ pub enum MissionMember {
     Clock(Expr),
     /// `robot`
     Robot(Robot),
+    /// `host`
+    Host(Host),
     /// `goal`
     Goal(Goal),
     /// `done when`
@@ -56,6 +58,17 @@ pub struct Robot {
     pub target: Option<Expr>,
     /// Scatter.
     pub scatter: Option<Expr>,
+    /// Agents.
+    pub runs: Vec<(Ident, Vec<Arg>)>,
+}
+
+/// A computer without a body that runs agents, or an array of them.
+#[derive(Debug, Clone)]
+pub struct Host {
+    /// Name.
+    pub name: Ident,
+    /// Array size.
+    pub count: Option<Expr>,
     /// Agents.
     pub runs: Vec<(Ident, Vec<Arg>)>,
 }

@@ -1,6 +1,7 @@
 //! Does every activation end in acceptable time? Nothing loops but over lists, whose lengths are bounded by
 //! their types, so the most operations an activation can take are known.
 
+use super::{anytime::MOST_ROUNDS, constants::Constants};
 use crate::code;
 use soifra_graph::{Conjunct, Diagnostic, Expr, Graph, Op, PlanKind, Stmt, StmtKind, Type, Unit, UnitKind};
 
@@ -9,7 +10,7 @@ const MOST: u64 = 100_000_000;
 
 /// Checks every unit.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
-    let mut c = Costs { g, functions: vec![None; g.functions.len()] };
+    let mut c = Costs { g, functions: vec![None; g.functions.len()], rounds: 0, known: Constants::new(g) };
     let mut out = Vec::new();
     for u in g.agents.iter().flat_map(|a| &a.units) {
         let cost = c.unit(u);
@@ -28,14 +29,21 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     out
 }
 
-struct Costs<'a> {
-    g: &'a Graph,
+struct Costs<'g> {
+    g: &'g Graph,
     /// Cost of each function; [`u64::MAX`] while it is being worked out, so that a ring has no bound.
     functions: Vec<Option<u64>>,
+    /// Rounds of the anytime service at hand.
+    rounds: u64,
+    known: Constants<'g>,
 }
 
 impl Costs<'_> {
     fn unit(&mut self, u: &Unit) -> u64 {
+        // A budget that is not known yet is held to the most that is possible, when the run begins.
+        let paid = u.timing.budget.as_ref().zip(crate::schedule::round_cost(&u.kind));
+        let rounds = paid.and_then(|(b, c)| Some(self.known.number(b, 0)? / self.known.number(c, 0)?));
+        self.rounds = rounds.map_or(MOST_ROUNDS as u64, |r| r.min(MOST_ROUNDS) as u64);
         let mut sum = self.block(&u.prelude);
         match &u.kind {
             UnitKind::Service(body) => sum = sum.saturating_add(self.block(body)),
@@ -84,6 +92,11 @@ impl Costs<'_> {
             | StmtKind::Command(_, e)
             | StmtKind::Publish(_, e)
             | StmtKind::SetParam(_, e) => self.expr(e),
+            StmtKind::Refine(r) => {
+                let round =
+                    r.until.iter().chain([&r.step]).map(|e| self.expr(e)).fold(1, u64::saturating_add);
+                self.expr(&r.first).saturating_add(self.rounds.saturating_mul(round))
+            }
             StmtKind::Tell { content, .. } => self.expr(content),
             StmtKind::Note(_, e) => e.as_ref().map_or(0, |e| self.expr(e)),
             StmtKind::If(e, a, b) => self.expr(e).saturating_add(self.block(a).max(self.block(b))),

@@ -6,7 +6,10 @@ use soifra_graph::{Agent, AgentBinding, Diagnostic, Graph, Platform, Port, Robot
 /// Checks every robot against its platform, and every platform by itself.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    for p in &g.platforms {
+    for (i, p) in g.platforms.iter().enumerate() {
+        if g.robots.iter().any(|r| r.host && r.platform as usize == i) {
+            continue;
+        }
         complete(p, &mut out);
         driven(p, &mut out);
     }
@@ -101,6 +104,7 @@ fn port_on(
             d.labels[0].text = format!("`{}` needs it", a.name);
             let d = d.at(b.at, format!("`{}` runs it", r.name));
             out.push(match same.as_slice() {
+                _ if r.host => d.hint("a host has no body; let a robot run this agent"),
                 [] => match all.as_slice() {
                     [] => d.hint(format!("the platform has none; choose another platform, or add `{role} {} = …` to its profile", port.name)),
                     _ => d,

@@ -13,6 +13,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             !matches!(
                 s.kind,
                 StmtKind::Let(..)
+                    | StmtKind::Refine(_)
                     | StmtKind::If(..)
                     | StmtKind::IfSome { .. }
                     | StmtKind::Switch { .. }

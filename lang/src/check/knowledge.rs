@@ -57,6 +57,7 @@ fn one(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
         Op::Truth(_)
         | Op::Run(_)
         | Op::Believed(..)
+        | Op::Executed(..)
         | Op::Achieved(_)
         | Op::Quantified(_)
         | Op::OfRobot(_) => out.push(

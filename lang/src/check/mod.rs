@@ -1,6 +1,7 @@
 //! What can be known before anything moves: checks on the graph, one file for each question. They run on
 //! graphs from sources and from graph files alike.
 
+mod anytime;
 mod arbitration;
 mod bounds;
 mod capability;
@@ -11,6 +12,7 @@ mod effects;
 mod events;
 mod form;
 mod goals;
+mod hosts;
 mod knowledge;
 mod lists;
 mod materials;
@@ -18,12 +20,13 @@ mod placement;
 mod quantifiers;
 mod ranges;
 mod reachability;
+mod schedulability;
 mod timing;
 mod topics;
 mod types;
 pub mod walk;
 
-pub(crate) use constants::not_computable;
+pub(crate) use constants::{Constants, not_computable};
 pub(crate) use ranges::wrong_period;
 
 use soifra_graph::{Diagnostic, Graph};
@@ -39,6 +42,7 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(knowledge::check(graph));
     out.extend(goals::check(graph));
     out.extend(capability::check(graph));
+    out.extend(hosts::check(graph));
     out.extend(quantifiers::check(graph));
     out.extend(clock::check(graph));
     out.extend(arbitration::check(graph));
@@ -46,6 +50,8 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(topics::check(graph));
     out.extend(events::check(graph));
     out.extend(timing::check(graph));
+    out.extend(anytime::check(graph));
+    out.extend(schedulability::check(graph));
     out.extend(effects::check(graph));
     out.extend(lists::check(graph));
     out.extend(computable::check(graph));
@@ -59,6 +65,11 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
         out.extend(placement::check(graph));
     }
     out
+}
+
+/// Whether the parts of a graph fit together, so that it can be asked about.
+pub(crate) fn fits_together(graph: &Graph) -> bool {
+    types::check(graph).is_empty()
 }
 
 /// Agents that some robot runs, by index.

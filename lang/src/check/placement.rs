@@ -61,7 +61,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
 /// The robots; `None` when there are too many.
 fn bodies(g: &Graph, known: &mut Constants<'_>) -> Option<Vec<Body>> {
     let mut out: Vec<Body> = Vec::new();
-    for r in &g.robots {
+    for r in g.bodies() {
         let body = g.platforms.get(r.platform as usize).and_then(|p| p.of_role("body").next());
         let Some(radius) = body.and_then(|c| number(c, "radius", known, 0)) else { continue };
         let Some(count) = known.count(r.count.as_ref()) else { continue };

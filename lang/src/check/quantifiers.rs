@@ -30,10 +30,10 @@ fn whole(g: &Graph, e: &Expr, out: &mut Vec<Diagnostic>) {
 
 fn asked_of_all(g: &Graph, e: &Expr, out: &mut Vec<Diagnostic>) {
     e.walk(&mut |e| {
-        let Op::Believed(agent, _) = e.op else { return };
+        let (Op::Believed(agent, _) | Op::Executed(agent, _, _)) = e.op else { return };
         let Some(a) = g.agents.get(agent as usize) else { return };
         let lacks = |r: &&RobotGroup| r.agents.iter().all(|b| b.agent != agent);
-        if let Some(r) = g.robots.iter().find(lacks) {
+        if let Some(r) = g.bodies().find(lacks) {
             out.push(
                 Diagnostic::error(code::NO_AGENT, format!("not every robot runs `{}`", a.name))
                     .at(e.span, "asked of every robot")

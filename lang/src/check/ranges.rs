@@ -71,7 +71,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     for part in parts.chain(g.topics.iter().map(|t| &t.channel)) {
         c.component(part);
     }
-    for r in &g.robots {
+    for r in g.bodies() {
         c.count(r.count.as_ref(), &r.name);
         if let Some(s) = &r.scatter {
             c.distribution(s, "scatter", &r.name, 0);

@@ -50,18 +50,50 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             "it would still run at its next release: a longer period, or less to do",
             false,
         );
-        longer(
-            "budget",
-            t.budget.as_ref(),
-            "deadline",
-            t.deadline.as_ref(),
-            "end the budget before the deadline",
-            false,
-        );
+        if t.budget.is_some() {
+            let hint = "end it before the next release: a shorter deadline";
+            longer("deadline", t.deadline.as_ref(), "period", period, hint, false);
+        }
         longer("offset", offset, "period", period, "an offset is shorter than the period", true);
+        clauses(u, &mut out);
     }
     out.extend(expired_commands(g));
     out
+}
+
+/// Clauses that mean nothing without another one.
+fn clauses(u: &Unit, out: &mut Vec<Diagnostic>) {
+    let t = &u.timing;
+    if let (Some(jitter), false) = (&t.jitter, is_periodic(u)) {
+        out.push(
+            Diagnostic::error(code::TIMING, format!("`{}` has jitter and no period", u.name))
+                .at(jitter.span, "later than what?")
+                .hint("jitter is for units that are released `every …`"),
+        );
+    }
+    if let (Some(takes), None) = (&t.takes, &t.worst_case) {
+        out.push(
+            Diagnostic::error(code::TIMING, format!("nothing tells how long `{}` takes at most", u.name))
+                .at(takes.span, "a distribution of the execution time")
+                .hint("declare its end as well: `worst …`"),
+        );
+    }
+    if let Some(first) = t.shares.first()
+        && let Some(worst) = t.worst_case.as_ref().map_or(Some(0.0), seconds)
+    {
+        let held: Option<f64> = t.shares.iter().map(|s| seconds(&s.time)).sum();
+        if let Some(held) = held.filter(|h| *h > worst) {
+            let mut d = Diagnostic::error(
+                code::TIMING,
+                format!("`{}` holds what it shares longer than it runs", u.name),
+            )
+            .at(first.at, format!("held for {held} s"));
+            if let Some(w) = &t.worst_case {
+                d = d.at(w.span, format!("runs for {worst} s at most"));
+            }
+            out.push(d.hint("hold it for a shorter time, or declare a longer `worst`"));
+        }
+    }
 }
 
 /// Warns of commands that expire before their only giver can renew them: the robot would move by jerks, each
@@ -103,6 +135,10 @@ fn expired_commands(g: &Graph) -> Vec<Diagnostic> {
         }
     }
     out
+}
+
+fn is_periodic(u: &Unit) -> bool {
+    matches!(u.trigger, Trigger::Every { .. } | Trigger::Step { .. })
 }
 
 fn seconds(e: &Expr) -> Option<f64> {

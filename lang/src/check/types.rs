@@ -72,6 +72,9 @@ impl<'a> Types<'a> {
             self.agent(a);
         }
         self.agent = None;
+        if !g.robots.is_sorted_by_key(|r| r.host) {
+            self.bad(Span::default(), "a robot behind a host");
+        }
         for r in &g.robots {
             self.robot(r);
         }
@@ -79,8 +82,10 @@ impl<'a> Types<'a> {
     }
 
     fn robot(&mut self, r: &'a soifra_graph::RobotGroup) {
-        if r.platform as usize >= self.g.platforms.len() {
-            self.bad(r.at, "a robot without a platform");
+        match self.g.platforms.get(r.platform as usize) {
+            Some(p) if r.host && !p.components.is_empty() => self.bad(r.at, "a host with a body"),
+            Some(_) => {}
+            None => self.bad(r.at, "a robot without a platform"),
         }
         self.want(&r.start, &Type::Pose(Frame::map()));
         r.scatter.iter().for_each(|e| self.want(e, &Type::Distribution(Dim::LENGTH)));
@@ -169,6 +174,14 @@ impl<'a> Types<'a> {
                 Trigger::Event(e) if *e as usize >= a.events.len() => self.bad(u.span, "no such event"),
                 _ => {}
             }
+            let refines = |s: &&Stmt| matches!(s.kind, StmtKind::Refine(_));
+            let here = match &u.kind {
+                UnitKind::Service(body) if u.timing.budget.is_some() => body.iter().filter(refines).count(),
+                _ => 0,
+            };
+            if walk::statements(u).into_iter().filter(refines).count() > here.min(1) {
+                self.bad(u.span, "something is refined where nothing pays for it");
+            }
             if let UnitKind::Machine(states) = &u.kind {
                 self.machine(a, states);
             }
@@ -241,6 +254,12 @@ impl<'a> Types<'a> {
             StmtKind::Publish(i, e) => (self.g.topics.get(*i as usize).map(|t| t.ty.clone()), e),
             StmtKind::SetParam(i, e) => (self.g.params.get(*i as usize).map(|p| p.ty.clone()), e),
             StmtKind::If(e, _, _) => (Some(Type::Bool), e),
+            StmtKind::Refine(r) => {
+                self.want(&r.cost, &Type::Quantity(Dim::TIME));
+                r.until.iter().for_each(|u| self.want(u, &Type::Bool));
+                self.want(&r.step, &r.first.ty);
+                (self.locals.get(r.local as usize).cloned(), &r.first)
+            }
             StmtKind::Raise(i) if *i as usize >= a.events.len() => return self.bad(s.at, "no such event"),
             _ => return,
         };
@@ -304,6 +323,10 @@ impl<'a> Types<'a> {
             Op::Truth(Truth::InCollision) | Op::Run(Run::InCollision) => e.ty == Type::Bool,
             Op::Believed(a, s) => {
                 is(self.g.agents.get(*a as usize).and_then(|a| a.states.get(*s as usize)).map(|s| &s.ty))
+            }
+            Op::Executed(a, u, which) => {
+                let unit = self.g.agents.get(*a as usize).and_then(|a| a.units.get(*u as usize));
+                unit.is_some() && e.ty == typing::execution(*which)
             }
             Op::Achieved(i) => e.ty == Type::Bool && (*i as usize) < self.g.goals.len(),
             Op::Quantified(q) => match q {

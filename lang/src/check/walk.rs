@@ -48,11 +48,16 @@ pub fn unit<'a>(u: &'a Unit, visit: &mut dyn FnMut(&'a Expr)) {
     }
 }
 
+/// Every expression of some statements and of those in them.
+pub fn block<'a>(stmts: &'a [Stmt], visit: &mut dyn FnMut(&'a Expr)) {
+    let mut list = Vec::new();
+    stmts.iter().for_each(|s| nested(s, &mut list));
+    list.into_iter().for_each(|s| expressions_of(s, visit));
+}
+
 /// Every expression of an arbiter.
 pub fn arbiter<'a>(a: &'a Arbiter, visit: &mut dyn FnMut(&'a Expr)) {
-    let mut list = Vec::new();
-    a.prelude.iter().for_each(|s| nested(s, &mut list));
-    list.into_iter().for_each(|s| expressions_of(s, visit));
+    block(&a.prelude, visit);
     match &a.strategy {
         Strategy::Priority(list) | Strategy::Blend(list) => list.iter().for_each(|e| e.walk(visit)),
         Strategy::Layers(layers) => {
@@ -125,6 +130,9 @@ fn expressions_of<'a>(s: &'a Stmt, visit: &mut dyn FnMut(&'a Expr)) {
         | StmtKind::Command(_, e)
         | StmtKind::Publish(_, e)
         | StmtKind::SetParam(_, e) => e.walk(visit),
+        StmtKind::Refine(r) => {
+            [&r.first, &r.step, &r.cost].into_iter().chain(&r.until).for_each(|e| e.walk(visit));
+        }
         StmtKind::Tell { content, .. } => content.walk(visit),
         StmtKind::Note(_, e) => e.iter().for_each(|e| e.walk(visit)),
         StmtKind::If(e, _, _) => e.walk(visit),

@@ -33,6 +33,7 @@ impl Builder<'_, '_> {
                 let gap = if has_single_leaf(&node) { Gap::Line } else { Gap::Hard };
                 self.braced(node, gap);
             }
+            Rule::refine_stmt => self.refine(node),
             Rule::robot => self.robot(node),
             Rule::robot_runs | Rule::expect_leads | Rule::expect_until => self.clauses(node),
             Rule::subgoal | Rule::layer | Rule::expect_eventually => self.grouped_clauses(node),
@@ -178,6 +179,26 @@ impl Builder<'_, '_> {
     fn grouped_clauses(&mut self, node: Node<'_>) {
         self.open();
         self.clauses(node);
+        self.close();
+    }
+
+    /// What is improved, how, and for what price, each on a line of its own when it is too long.
+    fn refine(&mut self, node: Node<'_>) {
+        self.open();
+        self.parts(node, |b, p| match p {
+            Part::Child(c) => match c.as_rule() {
+                Rule::K_BY | Rule::K_COST => {
+                    b.indent(1);
+                    b.gap(Gap::Line);
+                    b.node(c);
+                    b.dedent();
+                }
+                Rule::refine_until => b.clause(c, 1),
+                Rule::expr => b.expr(c, 2),
+                _ => b.node(c),
+            },
+            p => b.plain(p),
+        });
         self.close();
     }
 

@@ -147,9 +147,11 @@ impl<'a> Checker<'a> {
         }
         let mut platforms = Vec::new();
         let mut robots: Vec<RobotGroup> = Vec::new();
-        self.distinct(
-            m.members.iter().filter_map(|x| if let M::Robot(r) = x { Some(&r.name) } else { None }),
-        );
+        self.distinct(m.members.iter().filter_map(|x| match x {
+            M::Robot(r) => Some(&r.name),
+            M::Host(h) => Some(&h.name),
+            _ => None,
+        }));
         for member in &m.members {
             if let M::Robot(r) = member {
                 let Some(g) = self.robot(
@@ -161,14 +163,19 @@ impl<'a> Checker<'a> {
                     self.poison(&r.name.name);
                     continue;
                 };
-                {
-                    self.robots.push((
-                        g.name.clone(),
-                        g.count.is_some(),
-                        g.agents.iter().map(|b| b.agent).collect(),
-                    ));
-                    robots.push(g);
-                }
+                self.known_robot(&g);
+                robots.push(g);
+            }
+        }
+        // Those without a body come after all that have one.
+        for member in &m.members {
+            if let M::Host(h) = member {
+                let Some(g) = self.host(h, &index, &mut platforms) else {
+                    self.poison(&h.name.name);
+                    continue;
+                };
+                self.known_robot(&g);
+                robots.push(g);
             }
         }
         let step =
@@ -232,6 +239,12 @@ impl<'a> Checker<'a> {
             expects,
             metrics,
         })
+    }
+
+    /// Conditions may ask for it by name.
+    fn known_robot(&mut self, g: &RobotGroup) {
+        let agents = g.agents.iter().map(|b| b.agent).collect();
+        self.robots.push((g.name.clone(), g.count.is_some(), agents));
     }
 
     /// The one member that `pick` finds; a second one is reported.

@@ -6,10 +6,13 @@ use crate::{
     typed::{Body, Checker, Place},
 };
 use soifra_graph::{
-    AgentBinding, Diagnostic, Dim, Expr, Frame, Name, Op, Own, Platform, RobotGroup, Type,
+    AgentBinding, Diagnostic, Dim, Expr, Frame, Name, Op, Own, Platform, RobotGroup, Type, Value,
     component::PLATFORM_ROLES,
 };
 use std::collections::BTreeMap;
+
+/// What the platform without parts is called.
+const HOST: &str = "host";
 
 impl<'a> Checker<'a> {
     /// Lowers a platform profile by name, once.
@@ -48,10 +51,7 @@ impl<'a> Checker<'a> {
         agents: &BTreeMap<Name, u32>,
         done: &mut Vec<Platform>,
     ) -> Option<RobotGroup> {
-        let count = match &r.count {
-            Some(c) => Some(self.in_body(Body::new(Place::Start), |s| s.typed(c, &Type::Int)).0?),
-            None => None,
-        };
+        let count = self.array_size(r.count.as_ref())?;
         let chosen = chosen?;
         let index = self.platform(chosen, done);
         for other in &r.platforms {
@@ -66,59 +66,20 @@ impl<'a> Checker<'a> {
                 self.report(d);
             }
         }
-        let at = ast::Ident { name: "index".into(), span: r.name.span };
-        let scene = |c: &mut Self, f: &mut dyn FnMut(&mut Self) -> Option<Expr>| {
-            let mut body = Body::new(Place::Scene);
-            if r.count.is_some() {
-                body.bind(&at, &Type::Int);
-            } else {
-                // Local 0 is the index in every scene expression; a single robot has no name for it.
-                body.local(&Type::Int);
-            }
-            c.in_body(body, |c| f(c)).0
-        };
-        let start = scene(self, &mut |c| c.start_pose(&r.at));
+        let start = self.scene(&r.name, r.count.is_some(), |c| c.start_pose(&r.at));
         let target = match &r.target {
-            Some(t) => Some(scene(self, &mut |c| c.typed(t, &Type::Point(Frame::map())))?),
+            Some(t) => {
+                Some(self.scene(&r.name, r.count.is_some(), |c| c.typed(t, &Type::Point(Frame::map())))?)
+            }
             None => None,
         };
         let scatter = match &r.scatter {
-            Some(s) => Some(scene(self, &mut |c| c.typed(s, &Type::Distribution(Dim::LENGTH)))?),
+            Some(s) => Some(
+                self.scene(&r.name, r.count.is_some(), |c| c.typed(s, &Type::Distribution(Dim::LENGTH)))?,
+            ),
             None => None,
         };
-        let mut bindings = Vec::new();
-        for (agent, args) in &r.runs {
-            let Some(i) = agents.get(&agent.name) else {
-                let d = unknown(
-                    code::UNKNOWN_NAME,
-                    "agent",
-                    &agent.name,
-                    agent.span,
-                    agents.keys().map(|k| &**k),
-                );
-                self.report(d);
-                continue;
-            };
-            if let Some(first) = bindings.iter().find(|b: &&AgentBinding| b.agent == *i) {
-                self.report(
-                    Diagnostic::error(
-                        code::EXCLUSIVE,
-                        format!("`{}` runs `{}` twice", r.name.name, agent.name),
-                    )
-                    .at(agent.span, "the second")
-                    .at(first.at, "the first")
-                    .hint("an agent runs once on a robot; give the second another agent"),
-                );
-                continue;
-            }
-            let params = self.agents[*i as usize].parameters.clone();
-            let mut arguments = None;
-            scene(self, &mut |c| {
-                arguments = c.arguments(agent, &params, args, agent.span);
-                None
-            });
-            bindings.push(AgentBinding { agent: *i, arguments: arguments?, at: agent.span });
-        }
+        let bindings = self.bindings(&r.name, r.count.is_some(), &r.runs, agents)?;
         Some(RobotGroup {
             name: r.name.name.clone(),
             count,
@@ -133,8 +94,96 @@ impl<'a> Checker<'a> {
             scatter,
             target,
             agents: bindings,
+            host: false,
             at: r.name.span,
         })
+    }
+
+    /// Lowers a host: a place for agents without a body.
+    pub fn host(
+        &mut self,
+        h: &'a ast::Host,
+        agents: &BTreeMap<Name, u32>,
+        done: &mut Vec<Platform>,
+    ) -> Option<RobotGroup> {
+        let count = self.array_size(h.count.as_ref())?;
+        let bindings = self.bindings(&h.name, count.is_some(), &h.runs, agents)?;
+        let bare = done.iter().position(|p| *p.name == *HOST && p.components.is_empty());
+        let platform = bare.unwrap_or_else(|| {
+            done.push(Platform { name: HOST.into(), components: Vec::new(), at: h.name.span });
+            done.len() - 1
+        });
+        let nowhere = Value::Pose([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        Some(RobotGroup {
+            name: h.name.name.clone(),
+            count,
+            platform: platform as u32,
+            alternatives: Vec::new(),
+            start: Expr::constant(nowhere, Type::Pose(Frame::map()), h.name.span),
+            scatter: None,
+            target: None,
+            agents: bindings,
+            host: true,
+            at: h.name.span,
+        })
+    }
+
+    #[allow(
+        clippy::option_option,
+        reason = "outer: whether it could be lowered, inner: whether it is there; 2026-11"
+    )]
+    fn array_size(&mut self, count: Option<&ast::Expr>) -> Option<Option<Expr>> {
+        match count {
+            Some(c) => Some(Some(self.in_body(Body::new(Place::Start), |s| s.typed(c, &Type::Int)).0?)),
+            None => Some(None),
+        }
+    }
+
+    /// Something said of each robot of an array, or of a single one.
+    fn scene<T>(&mut self, robot: &ast::Ident, array: bool, f: impl FnOnce(&mut Self) -> T) -> T {
+        let mut body = Body::new(Place::Scene);
+        if array {
+            body.bind(&ast::Ident { name: "index".into(), span: robot.span }, &Type::Int);
+        } else {
+            // Local 0 is the index in every scene expression; a single robot has no name for it.
+            body.local(&Type::Int);
+        }
+        self.in_body(body, f).0
+    }
+
+    /// The agents that a robot or host runs.
+    fn bindings(
+        &mut self,
+        robot: &ast::Ident,
+        array: bool,
+        runs: &'a [(ast::Ident, Vec<ast::Arg>)],
+        agents: &BTreeMap<Name, u32>,
+    ) -> Option<Vec<AgentBinding>> {
+        let mut bindings: Vec<AgentBinding> = Vec::new();
+        for (agent, args) in runs {
+            let Some(i) = agents.get(&agent.name) else {
+                let known = agents.keys().map(|k| &**k);
+                let d = unknown(code::UNKNOWN_NAME, "agent", &agent.name, agent.span, known);
+                self.report(d);
+                continue;
+            };
+            if let Some(first) = bindings.iter().find(|b| b.agent == *i) {
+                self.report(
+                    Diagnostic::error(
+                        code::EXCLUSIVE,
+                        format!("`{}` runs `{}` twice", robot.name, agent.name),
+                    )
+                    .at(agent.span, "the second")
+                    .at(first.at, "the first")
+                    .hint("an agent runs once on a robot; give the second another agent"),
+                );
+                continue;
+            }
+            let params = self.agents[*i as usize].parameters.clone();
+            let arguments = self.scene(robot, array, |c| c.arguments(agent, &params, args, agent.span))?;
+            bindings.push(AgentBinding { agent: *i, arguments, at: agent.span });
+        }
+        Some(bindings)
     }
 
     /// A pose, or a point with the heading to the east.
@@ -143,7 +192,7 @@ impl<'a> Checker<'a> {
         let value = self.expr(e, Some(&pose))?;
         if value.ty == Type::Point(Frame::map()) {
             let span = value.span;
-            let east = Expr::constant(soifra_graph::Value::Number(0.0), Type::Heading(Frame::map()), span);
+            let east = Expr::constant(Value::Number(0.0), Type::Heading(Frame::map()), span);
             return Some(Expr::new(
                 Op::Builtin(soifra_graph::Function::PoseAt),
                 vec![value, east],
@@ -166,7 +215,7 @@ impl<'a> Checker<'a> {
             crate::check::walk::agent(a, &mut look);
         }
         let Some(at) = asked else { return };
-        for r in robots.iter().filter(|r| r.target.is_none()) {
+        for r in robots.iter().filter(|r| r.target.is_none() && !r.host) {
             let runs = r.agents.iter().any(|b| {
                 let mut uses = false;
                 if let Some(a) = self.agents.get(b.agent as usize) {

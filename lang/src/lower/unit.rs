@@ -7,7 +7,7 @@ use crate::{
     decls::unknown,
     typed::{Body, Checker, Place},
 };
-use soifra_graph::{Diagnostic, Name, State, Timing, Trigger, Type, Unit, UnitKind};
+use soifra_graph::{Diagnostic, Name, Share, State, Timing, Trigger, Type, Unit, UnitKind};
 
 impl<'a> Checker<'a> {
     /// Lowers a unit of the current agent; machine data become states of it.
@@ -15,6 +15,7 @@ impl<'a> Checker<'a> {
         let mut body = Body::new(Place::Behaviour);
         let trigger = self.trigger(&u.name, &u.trigger, &mut body);
         let timing = self.timing(&u.timing, trigger.as_ref());
+        body.refines = matches!(u.kind, ast::UnitKind::Service(_)) && timing.budget.is_some();
         let (kind, body) = self.in_body(body, |c| match &u.kind {
             ast::UnitKind::Service(stmts) => Some(UnitKind::Service(c.block(stmts, 0))),
             ast::UnitKind::Machine(list) => c.machine(&u.name, list, states),
@@ -114,8 +115,20 @@ impl<'a> Checker<'a> {
         let mut t = Timing::default();
         for c in clauses {
             match c {
-                ast::Timing::Deadline(e) => t.deadline = self.start_duration(e),
+                ast::Timing::Deadline(e, misses) => {
+                    (t.deadline, t.misses) = (self.start_duration(e), *misses);
+                }
                 ast::Timing::Worst(e) => t.worst_case = self.start_duration(e),
+                ast::Timing::Takes(e) => {
+                    let ty = Type::Distribution(soifra_graph::Dim::TIME);
+                    t.takes = self.in_body(Body::new(Place::Start), |c| c.typed(e, &ty)).0;
+                }
+                ast::Timing::Jitter(e) => t.jitter = self.start_duration(e),
+                ast::Timing::Shares(resource, e) => {
+                    if let Some(time) = self.start_duration(e) {
+                        t.shares.push(Share { resource: resource.name.clone(), time, at: resource.span });
+                    }
+                }
                 ast::Timing::Budget(e) => t.budget = self.start_duration(e),
                 ast::Timing::AtMostEvery(e) => {
                     if matches!(trigger, Some(Trigger::Every { .. } | Trigger::Step { .. })) {

@@ -3,6 +3,7 @@
 use super::{Builder, Cursor, Rule, unquote};
 use crate::ast::*;
 use pest::iterators::Pair;
+use soifra_graph::Misses;
 
 type P<'i> = Pair<'i, Rule>;
 
@@ -105,10 +106,12 @@ impl Builder {
         let mut timing = Vec::new();
         for p in c.all(Rule::timing) {
             let mut c = Cursor::new(p);
-            timing.push(if c.word(Rule::K_DEADLINE) {
-                Timing::Deadline(self.expr_in(&mut c))
-            } else if c.word(Rule::K_WORST) {
+            timing.push(if c.word(Rule::K_WORST) {
                 Timing::Worst(self.expr_in(&mut c))
+            } else if c.word(Rule::K_TAKES) {
+                Timing::Takes(self.expr_in(&mut c))
+            } else if c.word(Rule::K_JITTER) {
+                Timing::Jitter(self.expr_in(&mut c))
             } else if c.word(Rule::K_BUDGET) {
                 Timing::Budget(self.expr_in(&mut c))
             } else if c.word(Rule::K_PRIORITY) {
@@ -116,10 +119,31 @@ impl Builder {
             } else if c.word(Rule::K_CORE) {
                 Timing::Core(self.int(&mut c))
             } else {
-                Timing::AtMostEvery(self.expr_in(&mut c))
+                match c.peek() {
+                    Some(rule @ (Rule::timing_deadline | Rule::timing_shares)) => {
+                        let Some(p) = c.any() else { continue };
+                        let mut c = Cursor::new(p);
+                        if rule == Rule::timing_shares {
+                            Timing::Shares(self.ident(&mut c), self.expr_in(&mut c))
+                        } else {
+                            let deadline = self.expr_in(&mut c);
+                            Timing::Deadline(deadline, self.misses(&mut c))
+                        }
+                    }
+                    _ => Timing::AtMostEvery(self.expr_in(&mut c)),
+                }
             });
         }
         (trigger, timing)
+    }
+
+    /// What a missed deadline means.
+    fn misses(&mut self, c: &mut Cursor<'_>) -> Misses {
+        match c.peek() {
+            Some(Rule::soft) => Misses::Soft,
+            Some(_) => Misses::AtMost(u32::try_from(self.int(c)).unwrap_or(u32::MAX)),
+            None => Misses::Hard,
+        }
     }
 
     fn trigger(&mut self, p: P<'_>) -> Trigger {
@@ -306,6 +330,13 @@ impl Builder {
         let mut c = Cursor::new(p);
         let kind = match rule {
             Rule::let_stmt => StmtKind::Let(self.ident(&mut c), self.expr_in(&mut c)),
+            Rule::refine_stmt => StmtKind::Refine {
+                name: self.ident(&mut c),
+                first: self.expr_in(&mut c),
+                step: self.expr_in(&mut c),
+                cost: self.expr_in(&mut c),
+                until: c.take(Rule::refine_until).map(|p| self.expr_in(&mut Cursor::new(p))),
+            },
             Rule::set_stmt => StmtKind::Set(self.ident(&mut c), self.expr_in(&mut c)),
             Rule::command_stmt => StmtKind::Command(self.ident(&mut c), self.expr_in(&mut c)),
             Rule::publish_stmt => StmtKind::Publish(self.ident(&mut c), self.expr_in(&mut c)),

@@ -119,6 +119,14 @@ fn is_aside(rule: Rule) -> bool {
             | Rule::K_FROM
             | Rule::K_DEADLINE
             | Rule::K_WORST
+            | Rule::K_HOST
+            | Rule::K_TAKES
+            | Rule::K_JITTER
+            | Rule::K_SHARES
+            | Rule::K_SOFT
+            | Rule::K_MISSES
+            | Rule::K_REFINE
+            | Rule::K_COST
             | Rule::K_CORE
             | Rule::K_BUDGET
             | Rule::K_MOST

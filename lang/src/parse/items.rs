@@ -175,6 +175,7 @@ impl Builder {
                 Rule::param => MissionMember::Param(self.param(p)),
                 Rule::clock => MissionMember::Clock(self.expr_in(&mut Cursor::new(p))),
                 Rule::robot => MissionMember::Robot(self.robot(p)),
+                Rule::host => MissionMember::Host(self.host(p)),
                 Rule::goal => MissionMember::Goal(self.goal(p)),
                 Rule::done => MissionMember::Done(self.expr_in(&mut Cursor::new(p)), span),
                 Rule::within => MissionMember::Within(self.expr_in(&mut Cursor::new(p)), span),
@@ -199,6 +200,19 @@ impl Builder {
         let at = self.expr_in(&mut c);
         let target = c.take(Rule::robot_target).map(|p| self.expr_in(&mut Cursor::new(p)));
         let scatter = c.take(Rule::robot_scatter).map(|p| self.expr_in(&mut Cursor::new(p)));
+        let runs = self.runs(&mut c);
+        Robot { name, count, platforms, at, target, scatter, runs }
+    }
+
+    fn host(&mut self, p: P<'_>) -> Host {
+        let mut c = Cursor::new(p);
+        let name = self.ident(&mut c);
+        let count = c.take(Rule::count).map(|p| self.expr_in(&mut Cursor::new(p)));
+        Host { name, count, runs: self.runs(&mut c) }
+    }
+
+    /// Agents with their arguments.
+    fn runs(&mut self, c: &mut Cursor<'_>) -> Vec<(Ident, Vec<Arg>)> {
         let mut runs = Vec::new();
         if let Some(p) = c.take(Rule::robot_runs) {
             for b in Cursor::new(p).all(Rule::binding) {
@@ -207,7 +221,7 @@ impl Builder {
                 runs.push((agent, c.take(Rule::args).map(|a| self.args(a)).unwrap_or_default()));
             }
         }
-        Robot { name, count, platforms, at, target, scatter, runs }
+        runs
     }
 
     fn goal(&mut self, p: P<'_>) -> Goal {

@@ -76,6 +76,8 @@ pub struct Body {
     pub in_machine: bool,
     /// Whether a robot is the subject (`each robot:`).
     pub of_robot: bool,
+    /// Whether the body is that of a service with a budget, which has not refined anything yet.
+    pub refines: bool,
 }
 
 impl Body {
@@ -90,6 +92,7 @@ impl Body {
             data: Vec::new(),
             in_machine: false,
             of_robot: false,
+            refines: false,
         }
     }
 

@@ -3,8 +3,8 @@
 use super::{Body, Checker, Place};
 use crate::{ast::*, code, decls::unknown};
 use soifra_graph::{
-    Diagnostic, Dim, Expr as GExpr, Name, Op, Own, Run, Span, Stmt as GStmt, StmtKind as GStmtKind, Truth,
-    Type, Value,
+    Diagnostic, Dim, Execution, Expr as GExpr, Name, Op, Own, Run, Span, Stmt as GStmt,
+    StmtKind as GStmtKind, Truth, Type, Value,
 };
 
 /// What a robot knows of itself.
@@ -280,6 +280,9 @@ impl<'a> Checker<'a> {
     /// `robot.field`, `truth.field`, `r1.truth.field`, `agent.state`, `Enum.variant`; `None` when `on` is
     /// none of these.
     pub fn qualified(&mut self, on: &Expr, field: &Ident, span: Span) -> Option<Option<GExpr>> {
+        if let Some(e) = self.executed(on, field, span) {
+            return Some(e);
+        }
         if let ExprKind::Field(robot, middle) = &*on.kind {
             let ExprKind::Name(robot) = &*robot.kind else { return None };
             if self.is_bound(robot) {
@@ -341,14 +344,7 @@ impl<'a> Checker<'a> {
     }
 
     fn of_subject(&mut self, subject: Option<u32>, middle: &str, field: &Ident, span: Span) -> Option<GExpr> {
-        if let Some(group) = subject
-            && self.robots[group as usize].1
-        {
-            self.report(
-                Diagnostic::error(code::UNKNOWN_FIELD, "an array of robots has no single value")
-                    .at(span, "which one of them?")
-                    .hint("quantify: `each robot: …`, `mean robot: …`"),
-            );
+        if !self.is_one(subject, span) {
             return None;
         }
         match middle {
@@ -442,16 +438,11 @@ impl<'a> Checker<'a> {
     }
 
     fn believed(&mut self, subject: Option<u32>, agent: usize, field: &Ident, span: Span) -> Option<GExpr> {
-        let a = &self.agents[agent];
-        if subject.is_none() && !self.body.of_robot {
-            let name = a.name.clone();
-            self.report(
-                Diagnostic::error(code::UNKNOWN_NAME, format!("which robot's `{name}`?"))
-                    .at(span, "no robot is meant here")
-                    .hint(format!("write `ROBOT.{name}.…` or quantify: `each robot: …`")),
-            );
+        let name = self.agents[agent].name.clone();
+        if !self.is_meant(subject, &name, span) {
             return None;
         }
+        let a = &self.agents[agent];
         let Some(i) = a.states.iter().position(|s| s.name == field.name) else {
             let names: Vec<String> = a.states.iter().map(|s| s.name.to_string()).collect();
             let d = unknown(
@@ -467,6 +458,75 @@ impl<'a> Checker<'a> {
         let ty = a.states[i].ty.clone();
         let e = GExpr::new(Op::Believed(agent as u32, i as u32), Vec::new(), ty, span);
         Some(self.for_robot(subject, e))
+    }
+
+    /// `agent.unit.misses`, `robot.agent.unit.misses`: what is known of the executions of a unit.
+    fn executed(&mut self, on: &Expr, field: &Ident, span: Span) -> Option<Option<GExpr>> {
+        let ExprKind::Field(of, unit) = &*on.kind else { return None };
+        if self.body.place != Place::Truth {
+            return None;
+        }
+        let (robot, agent) = match &*of.kind {
+            ExprKind::Name(agent) => (None, agent),
+            ExprKind::Field(robot, agent) => match &*robot.kind {
+                ExprKind::Name(robot) => (Some(robot), &agent.name),
+                _ => return None,
+            },
+            _ => return None,
+        };
+        if self.is_bound(robot.unwrap_or(agent)) {
+            return None;
+        }
+        let a = self.agents.position(agent)?;
+        let is_state = self.agents[a].states.iter().any(|s| s.name == unit.name);
+        let u = self.agents[a].units.iter().position(|x| x.name == unit.name).filter(|_| !is_state)?;
+        let subject = match robot {
+            Some(robot) => self.subject(robot, on.span)?,
+            None => None,
+        };
+        let which = match &*field.name {
+            "activations" => Execution::Activations,
+            "misses" => Execution::Misses,
+            "response" => Execution::Response,
+            other => {
+                let known = ["activations", "misses", "response"];
+                let d = unknown(code::UNKNOWN_FIELD, "fact about a unit", other, field.span, known);
+                self.report(d);
+                return Some(None);
+            }
+        };
+        if !self.is_one(subject, span) || !self.is_meant(subject, agent, span) {
+            return Some(None);
+        }
+        let op = Op::Executed(a as u32, u as u32, which);
+        let e = GExpr::new(op, Vec::new(), soifra_graph::typing::execution(which), span);
+        Some(Some(self.for_robot(subject, e)))
+    }
+
+    /// Whether a single robot is named, or none.
+    fn is_one(&mut self, subject: Option<u32>, span: Span) -> bool {
+        let array = subject.is_some_and(|group| self.robots[group as usize].1);
+        if array {
+            self.report(
+                Diagnostic::error(code::UNKNOWN_FIELD, "an array of robots has no single value")
+                    .at(span, "which one of them?")
+                    .hint("quantify: `each robot: …`, `mean robot: …`"),
+            );
+        }
+        !array
+    }
+
+    /// Whether it is told whose agent is meant.
+    fn is_meant(&mut self, subject: Option<u32>, agent: &Name, span: Span) -> bool {
+        let meant = subject.is_some() || self.body.of_robot;
+        if !meant {
+            self.report(
+                Diagnostic::error(code::UNKNOWN_NAME, format!("which robot's `{agent}`?"))
+                    .at(span, "no robot is meant here")
+                    .hint(format!("write `ROBOT.{agent}.…` or quantify: `each robot: …`")),
+            );
+        }
+        meant
     }
 
     fn known_names(&self) -> Vec<String> {

@@ -3,7 +3,8 @@
 use super::Checker;
 use crate::{ast::*, code, decls::unknown};
 use soifra_graph::{
-    Conjunct, Diagnostic, Expr as GExpr, Name, Op, Rule, Span, Stmt as GStmt, StmtKind as GStmtKind, Type,
+    Conjunct, Diagnostic, Expr as GExpr, Name, Op, Refine, Rule, Span, Stmt as GStmt, StmtKind as GStmtKind,
+    Type,
 };
 
 /// Deepest nesting of blocks.
@@ -70,6 +71,9 @@ impl<'a> Checker<'a> {
                 };
                 let local = self.body.bind(name, &value.ty.clone());
                 GStmtKind::Let(local, value)
+            }
+            StmtKind::Refine { name, first, step, cost, until } => {
+                self.refine(name, [first, step, cost], until.as_ref(), s.span, depth)?
             }
             StmtKind::Set(name, value) => self.set(name, value)?,
             StmtKind::Command(name, value) => {
@@ -163,6 +167,50 @@ impl<'a> Checker<'a> {
             }
             StmtKind::Do(action, args) => return self.do_action(action, args, s.span, depth),
         }])
+    }
+
+    /// `refine x = first by step cost c until u`: the value that as many rounds as are paid for come to.
+    fn refine(
+        &mut self,
+        name: &Ident,
+        [first, step, cost]: [&Expr; 3],
+        until: Option<&Expr>,
+        at: Span,
+        depth: usize,
+    ) -> Option<GStmtKind> {
+        let refines = std::mem::take(&mut self.body.refines);
+        if !refines || depth > 0 {
+            self.poison(&name.name);
+            self.report(
+                Diagnostic::error(code::ANYTIME, "`refine` cannot stand here")
+                    .at(at, "not directly in a service with a budget, or not the first")
+                    .hint("write it once, outside of any `if`, in a `service … budget 50 ms { … }`"),
+            );
+            return None;
+        }
+        let cost = self.start_duration(cost);
+        let Some(first) = self.expr(first, None) else {
+            self.poison(&name.name);
+            return None;
+        };
+        let ty = first.ty.clone();
+        let local = self.body.bind(name, &ty);
+        let step = self.expr(step, Some(&ty))?;
+        if ty == Type::Int && step.ty == Type::NUMBER {
+            self.report(
+                Diagnostic::error(code::MISMATCH, "a round makes another type of it")
+                    .at(step.span, "Number")
+                    .at(first.span, "Int")
+                    .hint("begin with a number that has a fraction, such as `2.0`"),
+            );
+            return None;
+        }
+        let step = self.coerce(step, &ty);
+        let until = match until {
+            Some(u) => Some(self.typed(u, &Type::Bool)?),
+            None => None,
+        };
+        Some(GStmtKind::Refine(Box::new(Refine { local, first, step: step?, cost: cost?, until })))
     }
 
     /// Checks a performative's name.

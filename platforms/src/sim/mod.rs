@@ -73,11 +73,13 @@ enum Actuator {
 impl Simulator {
     /// Builds the simulation of a scene. The error says which part of the scene cannot be simulated and why.
     pub fn new(scene: &Scene) -> Result<Simulator, String> {
-        let chassis = scene.platforms.iter().map(scene::chassis).collect::<Result<Vec<_>, _>>()?;
+        // The platform of hosts has no parts, and comes last.
+        let bodied = scene.platforms.iter().take_while(|p| !p.parts.is_empty());
+        let chassis = bodied.map(scene::chassis).collect::<Result<Vec<_>, _>>()?;
         let actuators = scene::actuators(scene, &chassis)?;
         let things = scene::things(scene)?;
         let population = scene::population(scene, &chassis)?;
-        let platforms: Vec<u32> = scene.robots.iter().map(|r| r.platform).collect();
+        let platforms: Vec<u32> = scene.bodies().iter().map(|r| r.platform).collect();
         let twists = |i: &u32| actuators[platforms[*i as usize] as usize].contains(&Actuator::Twist);
         Ok(Simulator {
             now: 0,

@@ -164,7 +164,7 @@ pub fn actuators(scene: &Scene, chassis: &[Chassis]) -> Result<Vec<Vec<Actuator>
 /// Robots and movers.
 pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, String> {
     let mut all = Population { bodies: Vec::new(), drives: Vec::new(), movers: Vec::new() };
-    for robot in &scene.robots {
+    for robot in scene.bodies() {
         let c = chassis
             .get(robot.platform as usize)
             .ok_or_else(|| format!("robot `{}` has no platform", robot.name))?;
@@ -202,8 +202,8 @@ pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, Stri
 
 /// Where robots start and want to go: what wanderers keep out of.
 fn anchors(scene: &Scene) -> Vec<[f64; 2]> {
-    let starts = scene.robots.iter().map(|r| [r.start[0], r.start[1]]);
-    let targets = scene.robots.iter().filter_map(|r| r.target).map(|t| [t[0], t[1]]);
+    let starts = scene.bodies().iter().map(|r| [r.start[0], r.start[1]]);
+    let targets = scene.bodies().iter().filter_map(|r| r.target).map(|t| [t[0], t[1]]);
     starts.chain(targets).filter(|p| p.iter().all(|x| x.is_finite())).collect()
 }
 

@@ -52,10 +52,10 @@ impl Schedule {
             let of = format!("platform `{}`", platform.name);
             for (index, part) in platform.of_role("sensor").enumerate() {
                 let reads = |i: &usize| {
-                    let r = &scene.robots[*i];
+                    let r = &scene.bodies()[*i];
                     r.platform as usize == p && r.consumed.get(index).copied().unwrap_or(false)
                 };
-                let seats: Vec<usize> = (0..scene.robots.len()).filter(reads).collect();
+                let seats: Vec<usize> = (0..scene.bodies().len()).filter(reads).collect();
                 if seats.is_empty() {
                     continue;
                 }
@@ -65,7 +65,7 @@ impl Schedule {
                     (false, Some(step)) if step.0 > 0 => step,
                     _ => return Err(args.wrong("it has no `period`, and the mission has no step clock")),
                 };
-                let names: Vec<&str> = seats.iter().map(|i| scene.robots[*i].name.as_str()).collect();
+                let names: Vec<&str> = seats.iter().map(|i| scene.bodies()[*i].name.as_str()).collect();
                 groups.push(Group {
                     sensor: sensors::build(Mount { args, chassis, seed: scene.seed, robots: &names })?,
                     index: index as u32,
@@ -78,7 +78,7 @@ impl Schedule {
                 });
             }
         }
-        Ok(Schedule { groups, nearby: Nearby::default(), robots: scene.robots.len() })
+        Ok(Schedule { groups, nearby: Nearby::default(), robots: scene.bodies().len() })
     }
 
     /// The next instant of a capture; [`i64::MAX`] without sensors.

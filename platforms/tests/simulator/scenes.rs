@@ -90,6 +90,7 @@ pub fn scene(parts: Vec<Part>, world: Vec<Part>, starts: &[[f64; 3]]) -> Scene {
         .iter()
         .enumerate()
         .map(|(i, s)| RobotScene {
+            host: false,
             name: format!("r[{i}]"),
             group: 0,
             platform: 0,

@@ -2,6 +2,7 @@
 
 use super::{
     board::Near,
+    cores::Anytime,
     env::{AgentEnv, Instant},
     log::{Item, Log},
     minds::{ACHIEVED, ACTIVE, FAILED, MindMut, Position},
@@ -9,7 +10,7 @@ use super::{
 };
 use crate::{
     Time,
-    mission::code::{AgentCode, BeliefCode, KindCode, PlanCode, StateCode},
+    mission::code::{AgentCode, AnytimeCode, BeliefCode, KindCode, PlanCode, StateCode},
     nodes::{self, Code, Ended, Host, Status},
 };
 use soifra_graph::{
@@ -27,6 +28,16 @@ pub(crate) struct Release {
     /// The record that brought it about, if one did and a trace is kept.
     pub cause: Option<u64>,
     pub letter: Option<Arc<Letter>>,
+    /// An anytime service whose time is over.
+    pub finish: Option<Finish>,
+}
+
+/// What an anytime service goes on from.
+#[derive(Debug, Clone)]
+pub(crate) struct Finish {
+    pub frame: Vec<f64>,
+    /// Rounds that were paid for.
+    pub rounds: u32,
 }
 
 /// What became of an activation.
@@ -41,6 +52,8 @@ pub(crate) struct Outcome {
     /// It had nothing to do any more.
     pub over: bool,
     pub fault: Option<Box<Fault>>,
+    /// An anytime service that has begun.
+    pub anytime: Option<Box<Anytime>>,
 }
 
 /// Room for evaluating activations, one after the other.
@@ -76,6 +89,7 @@ pub(crate) fn activate(
             return outcome;
         }
     }
+    let rounds = info.work.map_or(0, |w| instant.cast.works[w as usize].rounds);
     desk.frame[..unit.locals].fill(0.0);
     if let (Some((at, width)), Some(letter)) = (unit.letter, &release.letter)
         && letter.registers.len() == width
@@ -109,6 +123,10 @@ pub(crate) fn activate(
     let position = &mut mind.positions[info.unit as usize];
     let result = match &unit.kind {
         KindCode::Service(block) => run.perhaps(*block),
+        KindCode::Anytime(code) => match &release.finish {
+            Some(finish) => run.answer(code, finish),
+            None => run.begin(code, rounds).map(|a| outcome.anytime = Some(Box::new(a))),
+        },
         KindCode::Machine { prelude, states } => {
             run.machine(*prelude, states, position, agent, &mut desk.arguments)
         }
@@ -173,6 +191,48 @@ impl Run<'_, '_> {
 
     fn holds(&mut self, block: &Block) -> Result<bool, Fault> {
         Ok(self.number(block)? != 0.0)
+    }
+
+    /// An anytime service: what comes before its rounds, and how many it makes use of. The rounds are not
+    /// made yet: how many are paid for is known when the time is over.
+    fn begin(&mut self, code: &AnytimeCode, most: u32) -> Result<Anytime, Fault> {
+        self.perhaps(code.before)?;
+        self.block(&code.first)?;
+        self.keep(code, &code.first);
+        let frame = self.frame.clone();
+        let mut rounds = most;
+        if let Some(until) = &code.until {
+            let drawn = *self.env.drawn;
+            rounds = 0;
+            while rounds < most && !self.holds(until)? {
+                self.block(&code.step)?;
+                self.keep(code, &code.step);
+                rounds += 1;
+            }
+            *self.env.drawn = drawn;
+        }
+        Ok(Anytime { frame, rounds })
+    }
+
+    /// Makes the rounds that were paid for, and what follows from the value.
+    fn answer(&mut self, code: &AnytimeCode, finish: &Finish) -> Result<(), Fault> {
+        if finish.frame.len() == self.frame.len() {
+            self.frame.copy_from_slice(&finish.frame);
+        }
+        for _ in 0..finish.rounds {
+            self.block(&code.step)?;
+            self.keep(code, &code.step);
+        }
+        self.perhaps(code.after)
+    }
+
+    /// Makes the result of a block the value that is refined.
+    fn keep(&mut self, code: &AnytimeCode, block: &Block) {
+        let from = block.result as usize;
+        let to = from + block.width as usize;
+        if to <= self.frame.len() && code.local + block.width as usize <= self.frame.len() {
+            self.frame.copy_within(from..to, code.local);
+        }
     }
 
     /// A machine: transitions first, in order, at most one; then the body of the state it is in. The

@@ -1,6 +1,7 @@
 //! Who acts in a run: the agents of all robots and their units, with the places of their state. Fixed
 //! at the start.
 
+use super::work;
 use crate::{
     Scene, Time,
     mission::{
@@ -10,7 +11,7 @@ use crate::{
     },
     seed::{Stream, stream_id},
 };
-use soifra_graph::{Diagnostic, eval::Block};
+use soifra_graph::{Diagnostic, Distribution, Misses, Name, eval::Block};
 use std::collections::BTreeMap;
 
 /// Lifetime of commands and messages of units without a period of any kind.
@@ -53,6 +54,38 @@ pub(crate) struct UnitInfo {
     pub lifetime: Time,
     /// Its period, when it is released periodically.
     pub period: Option<Time>,
+    /// Index in [`Cast::works`], for units on a core and those that do not just take their worst case.
+    pub work: Option<u32>,
+}
+
+/// What executing a unit asks for.
+#[derive(Debug, Clone)]
+pub(crate) struct Work {
+    /// Index in [`Cast::cores`].
+    pub core: Option<u32>,
+    pub takes: Option<Distribution>,
+    /// Rounds of an anytime service that its budget pays for, and what one costs.
+    pub rounds: u32,
+    pub cost: Time,
+    pub jitter: Time,
+    pub misses: Misses,
+    /// Resources it holds at its beginning, one after the other, and for how long.
+    pub resources: Vec<(Name, Time)>,
+    /// The ceiling of each, and for how long.
+    pub sections: Vec<(Rank, Time)>,
+    /// Random stream.
+    pub stream: u64,
+}
+
+/// Rank on a core; the least goes first.
+pub(crate) type Rank = (std::cmp::Reverse<i64>, u32);
+
+/// A virtual core.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CoreInfo {
+    pub robot: u32,
+    /// Absent for one that a unit has for itself.
+    pub number: Option<u32>,
 }
 
 /// Units that are released together.
@@ -73,6 +106,8 @@ pub(crate) struct Cast {
     pub units: Vec<UnitInfo>,
     pub arguments: Vec<f64>,
     pub timers: Vec<Timer>,
+    pub works: Vec<Work>,
+    pub cores: Vec<CoreInfo>,
     /// Initial states.
     pub states: Vec<f64>,
     pub nodes: usize,
@@ -156,6 +191,10 @@ impl Cast {
                     if let Some(t) = timer {
                         timers.entry(t).or_default().push(cast.units.len() as u32);
                     }
+                    let of = &mission.graph.agents[binding.agent as usize].units[u].name;
+                    let source = format!("work/{name}.{of}");
+                    let work = work::of_unit(&mut cast, start, r as u32, unit, &source, &arguments)?;
+                    let info = UnitInfo { work, ..info };
                     cast.units.push(info);
                 }
                 cast.nodes += agent.nodes;
@@ -164,6 +203,7 @@ impl Cast {
             }
         }
         cast.first.push(cast.instances.len() as u32);
+        work::ceilings(&mut cast);
         for ((period, next), mut members) in timers {
             members.sort_by_key(|&u| (std::cmp::Reverse(cast.units[u as usize].priority), u));
             cast.timers.push(Timer { next, period, members });
@@ -175,7 +215,7 @@ impl Cast {
 /// The shortest period, in nanoseconds: a bound on the number of events of a run.
 const SHORTEST_PERIOD: i64 = 1_000;
 /// The longest duration in the timing of a unit, in nanoseconds: twice as long is still an instant.
-const LONGEST: i64 = 900_000_000 * 1_000_000_000;
+pub(super) const LONGEST: i64 = 900_000_000 * 1_000_000_000;
 
 /// Durations of a unit, and period and first release of a periodic one.
 #[expect(clippy::too_many_arguments, reason = "each is another side of the one unit")]
@@ -219,10 +259,14 @@ fn schedule(
         unit: number,
         priority: unit.timing.priority,
         worst: duration(unit.timing.worst_case.as_ref(), 0)?.unwrap_or_default(),
-        deadline: duration(unit.timing.deadline.as_ref(), 0)?.unwrap_or(Time::MAX),
+        // On a core the next release is the latest that counts as in time.
+        deadline: duration(unit.timing.deadline.as_ref(), 0)?
+            .or(rhythm.filter(|_| unit.timing.core.is_some() || unit.timing.budget.is_some()))
+            .unwrap_or(Time::MAX),
         gap: if period.is_some() { Time::ZERO } else { gap },
         lifetime: rhythm.map_or(DEFAULT_LIFETIME, |p| p + p),
         period,
+        work: None,
     };
     Ok((info, period.map(|p| (p, offset.unwrap_or_default()))))
 }

@@ -35,15 +35,29 @@ impl Engine<'_> {
         }
         let info = self.cast.units[release.unit as usize];
         let robot = self.cast.instances[info.instance as usize].robot;
-        let finish = release.start + info.worst;
-        if info.worst > Time::ZERO {
+        let items = log.items.get(outcome.from as usize..outcome.to as usize).unwrap_or_default();
+        if release.finish.is_some() {
+            self.commit_answer(release, outcome, items, log);
+            return;
+        }
+        let core = self.core_of(release.unit);
+        let taken = if core.is_some() { Time::ZERO } else { self.execution_time(release.unit) };
+        let finish = release.start + taken;
+        if taken > Time::ZERO {
             self.clocks[release.unit as usize].busy = finish;
         }
-        let items = log.items.get(outcome.from as usize..outcome.to as usize).unwrap_or_default();
-        let record = self.trace_activation(release, outcome, items, finish);
+        let record = self.trace_activation(release, outcome, items, core.is_none().then_some(finish));
         if let Some(fault) = outcome.fault.take() {
             let (agent, _) = self.names(release.unit);
             self.fault(Some(robot), &agent, &fault, record);
+            return;
+        }
+        if outcome.absent.is_none() {
+            self.tallies[release.unit as usize].activations += 1;
+        }
+        if let Some(core) = core {
+            let later = self.apply_inner(release.unit, items, log, record);
+            self.begun(core, release.unit, outcome, record, later);
             return;
         }
         if outcome.absent.is_some() {
@@ -51,23 +65,45 @@ impl Engine<'_> {
                 Clock { last: None, busy: Time::ZERO, ..self.clocks[release.unit as usize] };
             return;
         }
-        if finish - release.release > info.deadline {
-            self.late(release, finish, record);
+        if finish > release.release {
+            self.done(release.unit, release.release, finish);
         }
-        if info.worst == Time::ZERO {
+        if finish - release.release > info.deadline {
+            self.missed(release.unit, release.release, release.release + info.deadline, record);
+        }
+        if taken == Time::ZERO {
             items.iter().for_each(|item| self.apply(release.unit, item, log, record));
             return;
         }
+        let later = self.apply_inner(release.unit, items, log, record);
+        if !later.items.is_empty() {
+            self.queue.put(finish, Scheduled::Outputs { unit: release.unit, record, log: later });
+        }
+    }
+
+    /// Applies what stays within the agent, and gives back what leaves it.
+    fn apply_inner(&mut self, unit: u32, items: &[Item], log: &Log, record: Option<u64>) -> Log {
         let mut later = Log::default();
         for item in items {
             if item.is_output() {
                 put_off(item, log, &mut later);
             } else {
-                self.apply(release.unit, item, log, record);
+                self.apply(unit, item, log, record);
             }
         }
-        if !later.items.is_empty() {
-            self.queue.put(finish, Scheduled::Outputs { unit: release.unit, record, log: later });
+        later
+    }
+
+    /// Commits what an anytime service answers.
+    fn commit_answer(&mut self, release: &Release, outcome: &mut Outcome, items: &[Item], log: &Log) {
+        match outcome.fault.take() {
+            Some(fault) => {
+                let (agent, _) = self.names(release.unit);
+                let info = self.cast.units[release.unit as usize];
+                let robot = self.cast.instances[info.instance as usize].robot;
+                self.fault(Some(robot), &agent, &fault, release.cause);
+            }
+            None => items.iter().for_each(|item| self.apply(release.unit, item, log, release.cause)),
         }
     }
 
@@ -76,7 +112,7 @@ impl Engine<'_> {
         release: &Release,
         outcome: &Outcome,
         items: &[Item],
-        finish: Time,
+        finish: Option<Time>,
     ) -> Option<u64> {
         if !self.recorder.on() {
             return None;
@@ -101,7 +137,7 @@ impl Engine<'_> {
             let sensor = &self.mission.graph.agents[who.agent as usize].sensors[port as usize].name;
             format!("no reading of {sensor}: {}", self.texts.get(reason))
         });
-        let finish = if skipped.is_some() { release.start } else { finish };
+        let finish = if skipped.is_some() { Some(release.start) } else { finish };
         let event = Event::Activation {
             robot: who.robot,
             agent,
@@ -112,14 +148,6 @@ impl Engine<'_> {
             skipped,
         };
         self.recorder.record(self.now, causes, || event)
-    }
-
-    fn late(&mut self, release: &Release, finish: Time, record: Option<u64>) {
-        let (agent, unit) = self.names(release.unit);
-        let robot = self.cast.instances[self.cast.units[release.unit as usize].instance as usize].robot;
-        let late = (finish - release.release - self.cast.units[release.unit as usize].deadline).seconds();
-        let text = format!("{unit} misses its deadline by {late} s");
-        self.recorder.record(self.now, record, || Event::Fault { robot: Some(robot), agent, text });
     }
 
     /// Applies one item of an activation whose record is `cause`.
@@ -238,7 +266,9 @@ impl Engine<'_> {
         let receivers = &self.subscribers[topic as usize];
         let ranged = board.channel.range.is_some() && !receivers.is_empty();
         let truth = if board.placed() || ranged { self.platform.truth() } else { None };
-        let place = |robot: u32| truth.map_or([0.0; 3], |t| t.position(robot));
+        let bodies = self.scene.bodies().len();
+        let place =
+            |robot: u32| truth.filter(|_| (robot as usize) < bodies).map_or([0.0; 3], |t| t.position(robot));
         let here = place(robot);
         let number = board.publish(now, sender, registers, info.lifetime, record.unwrap_or(0), here);
         if receivers.is_empty() {

@@ -20,7 +20,7 @@ impl Engine<'_> {
         };
         // The last one, which every run ends with, says nothing about the run.
         let safe_actions = self.actuators.safe_actions.clone();
-        for r in 0..self.scene.robots.len() {
+        for r in 0..self.scene.bodies().len() {
             self.safe_action(r as u32, &why, None);
         }
         self.actuators.safe_actions = safe_actions;
@@ -50,7 +50,7 @@ impl Engine<'_> {
             contacts: self.contacts(),
             expectations,
             goals: self.goals(),
-            robots: (0..self.scene.robots.len()).map(|r| self.robot(r)).collect(),
+            robots: (0..self.scene.bodies().len()).map(|r| self.robot(r)).collect(),
             metrics,
             faults: self.faults,
         }

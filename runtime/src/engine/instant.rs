@@ -202,9 +202,16 @@ impl Engine<'_> {
                         mailboxes.push(unit);
                     }
                 }
+                Scheduled::Late { unit, release } => self.admit_since(unit, release, None),
+                Scheduled::Core { core, version } => self.core_due(core, version),
+                Scheduled::Deadline { unit, release } => self.deadline_due(unit, release),
                 Scheduled::Wake(unit) => {
                     self.clocks[unit as usize].waiting = false;
-                    if let Some(due) = self.clocks[unit as usize].due.take() {
+                    if self.clocks[unit as usize].due.is_some()
+                        && let Some(free) = self.blocked(unit)
+                    {
+                        self.wake(unit, free);
+                    } else if let Some(due) = self.clocks[unit as usize].due.take() {
                         self.release(unit, due.release, due.cause, None);
                     }
                     if self.mail.waits(unit) {
@@ -221,7 +228,10 @@ impl Engine<'_> {
         let mut due = Vec::new();
         self.queue.tick(now, |unit| due.push(unit));
         for unit in due {
-            self.admit(unit, None);
+            match self.jitter(unit) {
+                Time::ZERO => self.admit(unit, None),
+                late => self.queue.put(now + late, Scheduled::Late { unit, release: now }),
+            }
         }
     }
 
@@ -237,12 +247,17 @@ impl Engine<'_> {
         }
     }
 
-    /// Until when a unit may not be released; `None` when it may now.
+    /// Until when a unit may not be released; `None` when it may now, [`Time::MAX`] when that is not known
+    /// yet.
     fn blocked(&self, unit: u32) -> Option<Time> {
+        if self.is_pending(unit) {
+            return Some(Time::MAX);
+        }
         let (clock, info) = (&self.clocks[unit as usize], &self.cast.units[unit as usize]);
-        let gap = clock.last.filter(|_| info.gap > Time::ZERO).map_or(Time::ZERO, |t| t + info.gap);
+        let gap = self.earliest(unit);
         // A unit that takes its time is busy from its release on.
-        let running = clock.last.filter(|_| info.worst > Time::ZERO).map_or(Time::ZERO, |t| t + info.worst);
+        let alone = info.worst > Time::ZERO && self.core_of(unit).is_none();
+        let running = clock.last.filter(|_| alone).map_or(Time::ZERO, |t| t + info.worst);
         let free = gap.max(clock.busy).max(running);
         (free > self.now).then_some(free)
     }
@@ -251,24 +266,52 @@ impl Engine<'_> {
         let clock = &mut self.clocks[unit as usize];
         if !clock.waiting {
             clock.waiting = true;
-            self.queue.put(at, Scheduled::Wake(unit));
+            // A job on a core wakes it when it is done.
+            if at < Time::MAX {
+                self.queue.put(at, Scheduled::Wake(unit));
+            }
         }
     }
 
     /// A unit is to be released, now or as soon as it may. Of several releases that wait, one remains; a
     /// periodic unit that is still running is skipped.
     pub(super) fn admit(&mut self, unit: u32, cause: Option<u64>) {
+        self.admit_since(unit, self.now, cause);
+    }
+
+    /// As [`Engine::admit`], for one that was to be released at `release`.
+    fn admit_since(&mut self, unit: u32, release: Time, cause: Option<u64>) {
         let Some(free) = self.blocked(unit) else {
-            self.release(unit, self.now, cause, None);
+            self.release(unit, release, cause, None);
             return;
         };
         if self.cast.units[unit as usize].period.is_some() {
             self.trace_overrun(unit, cause);
             return;
         }
-        let release = self.now;
-        self.clocks[unit as usize].due.get_or_insert(Due { release, cause });
+        let due = self.clocks[unit as usize].due.is_some();
+        // What comes too soon is released when it may: its deadline counts from then.
+        let gap = self.earliest(unit);
+        self.clocks[unit as usize].due.get_or_insert(Due { release: release.max(gap), cause });
+        if !due && gap > self.now {
+            self.trace_deferral(unit, gap, cause);
+        }
         self.wake(unit, free);
+    }
+
+    /// When the least distance of its releases is over.
+    fn earliest(&self, unit: u32) -> Time {
+        let info = &self.cast.units[unit as usize];
+        let last = self.clocks[unit as usize].last.filter(|_| info.gap > Time::ZERO);
+        last.map_or(Time::ZERO, |t| t + info.gap)
+    }
+
+    fn trace_deferral(&mut self, unit: u32, until: Time, cause: Option<u64>) {
+        if self.recorder.on() {
+            let (agent, name) = self.names(unit);
+            let robot = self.cast.instances[self.cast.units[unit as usize].instance as usize].robot;
+            self.recorder.record(self.now, cause, || Event::Deferral { robot, agent, unit: name, until });
+        }
     }
 
     fn trace_overrun(&mut self, unit: u32, cause: Option<u64>) {
@@ -284,7 +327,7 @@ impl Engine<'_> {
             unit: name,
             release: now,
             start: now,
-            finish: now,
+            finish: Some(now),
             skipped: Some("the activation before it is still running".into()),
         });
     }
@@ -297,7 +340,11 @@ impl Engine<'_> {
         letter: Option<std::sync::Arc<super::post::Letter>>,
     ) {
         self.clocks[unit as usize].last = Some(self.now);
-        self.releases.push(Release { unit, release, start: self.now, cause, letter });
+        let release = Release { unit, release, start: self.now, cause, letter, finish: None };
+        match self.core_of(unit) {
+            Some(core) => self.enqueue(core, release),
+            None => self.releases.push(release),
+        }
     }
 
     /// Makes boards and places ready for units of some robots that hear topics.
@@ -320,7 +367,13 @@ impl Engine<'_> {
 
     /// Evaluates released units in waves: what one wave raises makes the next.
     fn activate_all(&mut self) {
-        while !self.releases.is_empty() && self.aborted.is_none() {
+        loop {
+            if !self.touched.is_empty() {
+                self.dispatch();
+            }
+            if self.releases.is_empty() || self.aborted.is_some() {
+                return;
+            }
             let mut releases = std::mem::take(&mut self.releases);
             let limit = self.most_events();
             self.events += releases.len();
@@ -442,6 +495,7 @@ impl Engine<'_> {
             scene: self.scene,
             cast: &self.cast,
             states: &self.minds.states,
+            tallies: &self.tallies,
             params: &self.params,
             truth: self.platform.truth(),
             contacts: &self.contacts,

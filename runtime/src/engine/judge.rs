@@ -3,6 +3,7 @@
 use super::{
     cast::Cast,
     contacts::Contacts,
+    cores::Tally,
     goals::Goals,
     regions::Regions,
     verdict::{Answer, Track},
@@ -12,7 +13,7 @@ use crate::{
     mission::{code::Condition, start},
 };
 use soifra_graph::{
-    Own, Run, Truth,
+    Execution, Own, Run, Truth,
     eval::{Block, Env, Fault, FaultKind, Memory},
 };
 
@@ -22,6 +23,7 @@ pub(crate) struct Court<'a> {
     pub scene: &'a Scene,
     pub cast: &'a Cast,
     pub states: &'a [f64],
+    pub tallies: &'a [Tally],
     pub params: &'a [f64],
     pub truth: Option<&'a dyn WorldTruth>,
     pub contacts: &'a Contacts,
@@ -47,7 +49,7 @@ impl Env for Court<'_> {
 
     fn truth(&self, robot: u32, which: Truth, out: &mut [f64]) -> Result<(), FaultKind> {
         let truth = self.truth.ok_or(FaultKind::Unavailable("world truth"))?;
-        if robot as usize >= self.scene.robots.len() {
+        if robot as usize >= self.scene.bodies().len() {
             return Err(FaultKind::Malformed);
         }
         let number = match which {
@@ -89,12 +91,25 @@ impl Env for Court<'_> {
         Ok(())
     }
 
+    fn executed(&self, robot: u32, agent: u32, unit: u32, which: Execution) -> Result<f64, FaultKind> {
+        let Some(i) = self.cast.find(robot, agent) else {
+            return Err(FaultKind::Unavailable("a unit of an agent that the robot does not run"));
+        };
+        let units = self.cast.instances[i].units as usize;
+        let tally = self.tallies.get(units + unit as usize).ok_or(FaultKind::Malformed)?;
+        Ok(match which {
+            Execution::Activations => tally.activations as f64,
+            Execution::Misses => tally.misses as f64,
+            Execution::Response => tally.response.seconds(),
+        })
+    }
+
     fn achieved(&self, goal: u32) -> Result<bool, FaultKind> {
         self.goals.achieved(goal).ok_or(FaultKind::Malformed)
     }
 
     fn robots(&self) -> Result<u32, FaultKind> {
-        Ok(self.scene.robots.len() as u32)
+        Ok(self.scene.bodies().len() as u32)
     }
 
     fn robot_of_group(&self, group: u32) -> Option<u32> {

@@ -14,6 +14,7 @@ mod board;
 mod cast;
 mod commit;
 mod contacts;
+mod cores;
 mod env;
 mod finish;
 mod goals;
@@ -31,6 +32,7 @@ mod senses;
 mod setup;
 pub(crate) mod snapshot;
 mod verdict;
+mod work;
 
 use crate::{Mission, Platform, Readings, Report, Scene, Time};
 use activate::{Desk, Outcome as Evaluated, Release};
@@ -40,6 +42,7 @@ use board::Board;
 use cast::Cast;
 pub use cast::DEFAULT_LIFETIME;
 use contacts::Contacts;
+use cores::{CoreState, Tally};
 use goals::Goals;
 use judge::Judge;
 use minds::Minds;
@@ -83,6 +86,11 @@ pub struct Engine<'m> {
     /// Status of each sub-goal as committed.
     subgoals: Vec<u8>,
     clocks: Vec<Clock>,
+    /// Of each unit.
+    tallies: Vec<Tally>,
+    cores: Vec<CoreState>,
+    /// Cores that something happened to.
+    touched: Vec<u32>,
     senses: Senses,
     boards: Vec<Board>,
     mail: Mail,

@@ -22,6 +22,12 @@ pub(crate) enum Scheduled {
     Outputs { unit: u32, record: Option<u64>, log: Log },
     /// A unit that was kept waiting may be released.
     Wake(u32),
+    /// A periodic unit is released, later than its period says.
+    Late { unit: u32, release: Time },
+    /// Something is to be decided on a core.
+    Core { core: u32, version: u64 },
+    /// A unit is to be done by now.
+    Deadline { unit: u32, release: Time },
 }
 
 /// The future.
@@ -54,8 +60,8 @@ impl Queue {
         }
     }
 
-    /// Takes up the future of a run of the same mission with `units` units; false when it is none.
-    pub fn resume(&mut self, agenda: Agenda, units: usize) -> bool {
+    /// Takes up the future of a run of the same mission with so many units and cores; false when it is none.
+    pub fn resume(&mut self, agenda: Agenda, units: usize, cores: usize) -> bool {
         let known = |u: &u32| (*u as usize) < units;
         let fits = agenda.timers.len() == self.timers.len()
             && agenda.scheduled.iter().all(|(_, n, what)| {
@@ -65,7 +71,10 @@ impl Queue {
                         Scheduled::Outputs { unit, log, .. } => {
                             known(unit) && log.items.iter().all(Item::is_output)
                         }
-                        Scheduled::Wake(unit) => known(unit),
+                        Scheduled::Wake(unit)
+                        | Scheduled::Late { unit, .. }
+                        | Scheduled::Deadline { unit, .. } => known(unit),
+                        Scheduled::Core { core, .. } => (*core as usize) < cores,
                     }
             });
         if !fits {

@@ -8,6 +8,7 @@ use super::{
     board::{Board, Channel},
     cast::Cast,
     contacts::Contacts,
+    cores::{CoreState, Tally},
     goals::Goals,
     judge::{Judge, Watch},
     minds::Minds,
@@ -93,6 +94,9 @@ impl<'m> Engine<'m> {
             subgoals: minds.subgoals.clone(),
             minds,
             clocks: vec![Clock::default(); cast.units.len()],
+            tallies: vec![Tally::default(); cast.units.len()],
+            cores: vec![CoreState::default(); cast.cores.len()],
+            touched: Vec::new(),
             senses: Senses::new(scene, &mission.graph.types),
             boards,
             mail: Mail::default(),
@@ -103,9 +107,9 @@ impl<'m> Engine<'m> {
             judge,
             faults: Vec::new(),
             aborted: None,
-            poses: vec![None; scene.robots.len()],
+            poses: vec![None; scene.bodies().len()],
             movers: BTreeMap::new(),
-            places: vec![[0.0; 3]; scene.robots.len()],
+            places: vec![[0.0; 3]; scene.bodies().len()],
             readings: Readings::default(),
             reports: Vec::new(),
             releases: Vec::new(),
@@ -226,7 +230,7 @@ fn judge(mission: &Mission, scene: &Scene, start: &mut Start<'_>, truth: bool) -
             Some(t) => Some(limit(start, scene, t)?),
             None => None,
         };
-        let tracks = if code.each_robot { scene.robots.len() } else { 1 };
+        let tracks = if code.each_robot { scene.bodies().len() } else { 1 };
         let blind = !truth && (code.truth || code.contacts);
         watches.push(Watch { tracks: vec![Track::default(); tracks], limit, blind, decided: Vec::new() });
     }

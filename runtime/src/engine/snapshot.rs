@@ -2,8 +2,17 @@
 //! if it had come there from the start.
 
 use super::{
-    Clock, Engine, actuate::Actuators, board::Kept, contacts::Contacts, goals::Goals, minds::Minds,
-    post::Mail, queue::Agenda, senses::Senses, verdict::Track,
+    Clock, Engine,
+    actuate::Actuators,
+    board::Kept,
+    contacts::Contacts,
+    cores::{CoreState, Tally},
+    goals::Goals,
+    minds::Minds,
+    post::Mail,
+    queue::Agenda,
+    senses::Senses,
+    verdict::Track,
 };
 use crate::Time;
 use serde::{Deserialize, Serialize};
@@ -20,6 +29,8 @@ pub struct Snapshot {
     minds: Minds,
     subgoals: Vec<u8>,
     clocks: Vec<Clock>,
+    tallies: Vec<Tally>,
+    cores: Vec<CoreState>,
     senses: Senses,
     boards: Vec<Kept>,
     mail: Mail,
@@ -62,6 +73,8 @@ impl Engine<'_> {
                 minds: self.minds.clone(),
                 subgoals: self.subgoals.clone(),
                 clocks: self.clocks.clone(),
+                tallies: self.tallies.clone(),
+                cores: self.cores.clone(),
                 senses: self.senses.clone(),
                 boards: self.boards.iter().map(|b| b.kept()).collect(),
                 mail: self.mail.clone(),
@@ -87,6 +100,9 @@ impl Engine<'_> {
             && s.minds.fits(&self.minds, self.mission, &self.cast)
             && s.subgoals.len() == self.subgoals.len()
             && s.clocks.len() == self.clocks.len()
+            && s.tallies.len() == self.tallies.len()
+            && s.cores.len() == self.cores.len()
+            && s.cores.iter().all(|c| c.fits(units))
             && s.senses.fits(&self.senses)
             && s.boards.len() == self.boards.len()
             && s.mail.fits(units)
@@ -96,13 +112,14 @@ impl Engine<'_> {
             && counts(&s.tracks) == counts(&tracks)
             && s.poses.len() == self.poses.len();
         if !fits
-            || !self.queue.resume(s.agenda, units)
+            || !self.queue.resume(s.agenda, units, s.cores.len())
             || !self.boards.iter_mut().zip(s.boards).all(|(board, kept)| board.resume(kept))
         {
             return false;
         }
         (self.now, self.polled) = (s.t, s.polled);
         (self.params, self.minds, self.subgoals, self.clocks) = (s.params, s.minds, s.subgoals, s.clocks);
+        (self.tallies, self.cores) = (s.tallies, s.cores);
         (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);
         (self.poses, self.movers) = (s.poses, s.movers.into_iter().collect());

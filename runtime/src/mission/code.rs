@@ -2,7 +2,7 @@
 
 use crate::nodes::Tree;
 use soifra_graph::{
-    Name, Span, Type,
+    Misses, Name, Span, Type,
     eval::{Block, Layout},
 };
 
@@ -72,16 +72,42 @@ pub(crate) struct TimingCode {
     pub worst_case: Option<Block>,
     pub at_most_every: Option<Block>,
     pub priority: i64,
+    pub misses: Misses,
+    /// A distribution.
+    pub takes: Option<Block>,
+    pub jitter: Option<Block>,
+    pub budget: Option<Block>,
+    pub core: Option<i64>,
+    /// Resources and how long each is held.
+    pub shares: Vec<(Name, Block)>,
 }
 
 pub(crate) enum KindCode {
     /// Agent-level `let`s and statements in one block.
     Service(Option<Block>),
+    Anytime(AnytimeCode),
     Machine {
         prelude: Option<Block>,
         states: Vec<StateCode>,
     },
     Plan(PlanCode),
+}
+
+/// A service that improves a value while its budget lasts.
+pub(crate) struct AnytimeCode {
+    /// Agent-level `let`s and the statements before.
+    pub before: Option<Block>,
+    /// First value, and next value.
+    pub first: Block,
+    pub step: Block,
+    /// Whether it is good enough.
+    pub until: Option<Block>,
+    /// What a round costs, in seconds.
+    pub cost: Block,
+    /// First register of the value.
+    pub local: usize,
+    /// The statements that use it.
+    pub after: Option<Block>,
 }
 
 pub(crate) struct StateCode {

@@ -3,8 +3,8 @@
 use super::{code::*, uses::Uses};
 use crate::nodes::{Act, Kind, MAX_DEPTH, Part, Tree};
 use soifra_graph::{
-    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Span, Stmt, Strategy, Timing, Trigger, Type, Unit,
-    UnitKind,
+    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy, Timing,
+    Trigger, Type, Unit, UnitKind,
     eval::{Block, CompileError, Compiler, Layout, Scope},
 };
 
@@ -156,6 +156,9 @@ fn unit(
     let (trigger, letter) = trigger(c, graph, agent, unit, &scope)?;
     let timing = timing(c, &unit.timing)?;
     let kind = match &unit.kind {
+        UnitKind::Service(body) if body.iter().any(|s| matches!(s.kind, StmtKind::Refine(_))) => {
+            KindCode::Anytime(anytime(c, &mut scope, unit, body)?)
+        }
         UnitKind::Service(body) => {
             let all: Vec<Stmt> = unit.prelude.iter().chain(body).cloned().collect();
             KindCode::Service(some_stmts(c, &mut scope, &all)?)
@@ -267,6 +270,45 @@ fn timing(c: &mut Compiler<'_>, t: &Timing) -> Compiled<TimingCode> {
         worst_case: perhaps(c, t.worst_case.as_ref())?,
         at_most_every: perhaps(c, t.at_most_every.as_ref())?,
         priority: t.priority.unwrap_or(0),
+        misses: t.misses,
+        takes: match &t.takes {
+            Some(e) if matches!(e.ty, Type::Distribution(_)) => Some(alone(c, e, &[])?),
+            Some(e) => return damaged(e.span, "a distribution is wanted here"),
+            None => None,
+        },
+        jitter: perhaps(c, t.jitter.as_ref())?,
+        budget: perhaps(c, t.budget.as_ref())?,
+        core: t.core,
+        shares: t
+            .shares
+            .iter()
+            .map(|s| Ok((s.resource.clone(), number(c, &s.time)?)))
+            .collect::<Compiled<_>>()?,
+    })
+}
+
+/// A service with a `refine` among its statements.
+fn anytime(c: &mut Compiler<'_>, scope: &mut Scope, unit: &Unit, body: &[Stmt]) -> Compiled<AnytimeCode> {
+    let at = body.iter().position(|s| matches!(s.kind, StmtKind::Refine(_)));
+    let Some((before, [refine, after @ ..])) = at.map(|i| body.split_at(i)) else {
+        return damaged(unit.span, "nothing is refined");
+    };
+    let StmtKind::Refine(r) = &refine.kind else {
+        return damaged(unit.span, "nothing is refined");
+    };
+    let Refine { local, first, step, cost, until } = &**r;
+    let (Some(ty), Some(register)) = (unit.locals.get(*local as usize), scope.local(*local)) else {
+        return damaged(refine.at, "there is no place for what is refined");
+    };
+    let before: Vec<Stmt> = unit.prelude.iter().chain(before).cloned().collect();
+    Ok(AnytimeCode {
+        before: some_stmts(c, scope, &before)?,
+        first: c.expr_as(scope, first, ty)?,
+        step: c.expr_as(scope, step, ty)?,
+        until: until.as_ref().map(|u| condition(c, scope, u)).transpose()?,
+        cost: number(c, cost)?,
+        local: register as usize,
+        after: some_stmts(c, scope, after)?,
     })
 }
 

@@ -97,7 +97,8 @@ pub(super) fn set(mission: &Mission, settings: &Settings) -> Result<Scene, Diagn
             return Err(Diagnostic::error(super::START_VALUE, "too many robots").at(r.at, "here"));
         }
         for (i, name) in instances {
-            robots.push(place(&mut start, code, g as u32, r.platform, name, i, consumed)?);
+            let robot = place(&mut start, code, g as u32, r.platform, name, i, consumed)?;
+            robots.push(RobotScene { host: r.host, ..robot });
         }
     }
     Ok(Scene { seed: settings.seed, step, world, platforms, robots })
@@ -158,6 +159,7 @@ fn place(
         start: scattered,
         target,
         consumed: consumed.to_vec(),
+        host: false,
     })
 }
 

@@ -65,6 +65,9 @@ impl Uses {
                     add(&mut self.publishes, *topic);
                     self.expr(e);
                 }
+                StmtKind::Refine(r) => {
+                    self.exprs([&r.first, &r.step].into_iter().chain(&r.until));
+                }
                 StmtKind::Tell { content, .. } => self.expr(content),
                 StmtKind::Note(_, e) => self.exprs(e),
                 StmtKind::Raise(_) => {}

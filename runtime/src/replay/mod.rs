@@ -66,7 +66,7 @@ pub fn verify(
     let scene = mission.scene(settings).map_err(ReplayError::Start)?;
     let stop = AtomicBool::new(false);
     let tape = Tape::new(records.into_iter());
-    let mut platform = Recorded::new(&tape, scene.robots.len(), &stop);
+    let mut platform = Recorded::new(&tape, scene.bodies().len(), &stop);
     compare(mission, settings, &scene, &mut platform, &tape, &stop, None)
 }
 

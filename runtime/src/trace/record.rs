@@ -31,17 +31,42 @@ pub enum Event {
         #[serde(with = "exact::registers")]
         registers: Vec<f64>,
     },
-    /// A unit was released, ran, and finished. `skipped` says why it did not run.
+    /// A unit was released, ran, and finished. `skipped` says why it did not run. When a unit on a core
+    /// finishes, a [`Event::Completion`] tells.
     Activation {
         robot: u32,
         agent: String,
         unit: String,
         release: Time,
         start: Time,
-        finish: Time,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        finish: Option<Time>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         skipped: Option<String>,
     },
+    /// A unit that comes too soon after its last release waits.
+    Deferral { robot: u32, agent: String, unit: String, until: Time },
+    /// A core goes on with another unit, or stands idle.
+    Switch {
+        robot: u32,
+        core: u32,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        agent: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        unit: Option<String>,
+    },
+    /// A unit on a core is done. `rounds` are those of an anytime service.
+    Completion {
+        robot: u32,
+        agent: String,
+        unit: String,
+        release: Time,
+        start: Time,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rounds: Option<u32>,
+    },
+    /// A unit is not done by its deadline.
+    Miss { robot: u32, agent: String, unit: String, release: Time, deadline: Time },
     /// A rule fired: its place among the rules of its unit and its guard as written.
     Rule { robot: u32, agent: String, unit: String, rule: u32, guard: String },
     /// A machine went from one state to another.

@@ -4,6 +4,7 @@
 //! constant pool, `to` an instruction, `n` a number of registers. Truth values are 0 and 1.
 
 use super::FaultKind;
+use crate::Execution;
 use crate::{Function, Name, Own, Run, Span, Truth, Type};
 
 /// Where registers lie.
@@ -142,6 +143,8 @@ pub(super) enum Instr {
     RunFact { which: Run, d: u32 },
     /// `state` indexes [`Program::believed`].
     Believed { d: u32, state: u32 },
+    /// `unit` indexes [`Program::executed`].
+    Executed { d: u32, unit: u32 },
     Achieved { d: u32, goal: u32 },
     Inside { d: u32, a: u32, b: u32 },
     Draw { d: u32, a: u32 },
@@ -274,6 +277,8 @@ pub struct Program {
     pub(super) functions: Vec<FunctionCode>,
     /// Agent, state, width.
     pub(super) believed: Vec<(u32, u32, u32)>,
+    /// Agent, unit, what is asked.
+    pub(super) executed: Vec<(u32, u32, Execution)>,
 }
 
 impl Shape {

@@ -1,7 +1,7 @@
 //! What a run may ask of its surroundings, and what it does to them.
 
 use super::FaultKind;
-use crate::{Distribution, Name, Own, Run, Span, Truth, Type};
+use crate::{Distribution, Execution, Name, Own, Run, Span, Truth, Type};
 
 /// The surroundings of a run. Every method has a default that says "not available here", so that an
 /// implementation answers only what may be asked in its place.
@@ -45,6 +45,10 @@ pub trait Env {
     /// A state of an agent of a robot.
     fn believed(&self, _robot: u32, _agent: u32, _state: u32, _out: &mut [f64]) -> Result<(), FaultKind> {
         Err(FaultKind::Unavailable("the state of an agent"))
+    }
+    /// What is known of the executions of a unit of an agent of a robot.
+    fn executed(&self, _robot: u32, _agent: u32, _unit: u32, _which: Execution) -> Result<f64, FaultKind> {
+        Err(FaultKind::Unavailable("the executions of a unit"))
     }
     /// Whether a goal is achieved.
     fn achieved(&self, _goal: u32) -> Result<bool, FaultKind> {

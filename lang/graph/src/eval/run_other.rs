@@ -218,6 +218,11 @@ impl Program {
                 let robot = m.robot()?;
                 m.env.believed(robot, agent, state, out(frame, d, n)?)
             }
+            Instr::Executed { d, unit } => {
+                let (agent, unit, which) = *some(self.executed.get(unit as usize))?;
+                let robot = m.robot()?;
+                finite(frame, d, m.env.executed(robot, agent, unit, which)?)
+            }
             Instr::Achieved { d, goal } => truth(frame, d, m.env.achieved(goal)?),
             Instr::Inside { d, a, b } => {
                 let inside = m.env.inside(some(array::<3>(frame, a as usize))?, get(frame, b)? as u32)?;

@@ -300,6 +300,7 @@ pub fn graph() -> Graph {
         count: None,
         platform: 0,
         alternatives: vec![],
+        host: false,
         start: number(0.0),
         scatter: None,
         target: None,

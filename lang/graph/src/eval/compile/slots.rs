@@ -231,6 +231,10 @@ impl Compiler<'_> {
             Op::Truth(which) => Instr::Truth { which, d, n },
             Op::Run(which @ (Run::Collisions | Run::InCollision)) => Instr::RunFact { which, d },
             Op::Achieved(goal) => Instr::Achieved { d, goal },
+            Op::Executed(agent, unit, which) => {
+                self.program.executed.push((agent, unit, which));
+                Instr::Executed { d, unit: (self.program.executed.len() - 1) as u32 }
+            }
             Op::Believed(agent, state) => {
                 self.program.believed.push((agent, state, n));
                 Instr::Believed { d, state: (self.program.believed.len() - 1) as u32 }

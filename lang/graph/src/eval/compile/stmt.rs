@@ -17,6 +17,11 @@ pub(super) fn walk<'s>(stmts: &'s [Stmt], visit: &mut dyn FnMut(&'s Expr)) {
             | StmtKind::Tell { content: e, .. }
             | StmtKind::Note(_, Some(e))
             | StmtKind::SetParam(_, e) => e.walk(visit),
+            StmtKind::Refine(r) => {
+                r.first.walk(visit);
+                r.step.walk(visit);
+                r.until.iter().for_each(|e| e.walk(visit));
+            }
             StmtKind::Note(_, None) | StmtKind::Raise(_) => {}
             StmtKind::If(e, then, otherwise) | StmtKind::IfSome { value: e, then, otherwise, .. } => {
                 e.walk(visit);
@@ -74,6 +79,8 @@ impl Compiler<'_> {
             StmtKind::Switch { value, arms, rest } => {
                 self.gen_switch_stmt(value, arms, rest.as_deref(), s.at)?;
             }
+            // Whoever runs a service takes its rounds apart.
+            StmtKind::Refine(_) => return error(s.at, "nothing can be refined here"),
             StmtKind::Rules(rules) => self.perhaps(|c| c.gen_rules(rules))?,
             StmtKind::Set(..)
             | StmtKind::Command(..)
