@@ -18,4 +18,4 @@ pub use mission::{Mission, Settings};
 pub use ports::{Platform, Reading, Readings, Report, WorldTruth};
 pub use scene::Scene;
 pub use time::Time;
-pub use trace::{Event, NoTrace, Record, TraceSink};
+pub use trace::{Event, NoTrace, Record, Thread, TraceSink};

@@ -73,16 +73,7 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
         ],
     ),
     ("state", &[("robot", "index"), ("agent", "text"), ("state", "text"), ("registers", "numbers")]),
-    (
-        "message",
-        &[
-            ("robot", "index"),
-            ("agent", "text"),
-            ("topic", "text"),
-            ("registers", "numbers"),
-            ("to", "text?"),
-        ],
-    ),
+    ("message", &[("robot", "index"), ("agent", "text"), ("topic", "text"), ("registers", "numbers")]),
     (
         "delivery",
         &[
@@ -99,7 +90,7 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
     ),
     ("command", &[("robot", "index"), ("actuator", "index"), ("registers", "numbers"), ("expires", "time")]),
     ("safe_action", &[("robot", "index"), ("action", "text"), ("reason", "text")]),
-    ("param", &[("param", "text"), ("registers", "numbers")]),
+    ("param", &[("agent", "text"), ("param", "text"), ("registers", "numbers")]),
     ("note", &[("robot", "index"), ("agent", "text"), ("text", "text")]),
     ("pose", &[("robot", "index"), ("pose", "numbers"), ("path_m", "number")]),
     ("mover", &[("name", "text"), ("pose", "numbers")]),
@@ -124,6 +115,44 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
     (
         "miss",
         &[("robot", "index"), ("agent", "text"), ("unit", "text"), ("release", "time"), ("deadline", "time")],
+    ),
+    (
+        "acl",
+        &[
+            ("robot", "index"),
+            ("performative", "text"),
+            ("sender", "text"),
+            ("receiver", "text"),
+            ("content", "text?"),
+            ("registers", "numbers?"),
+            ("reason", "text?"),
+            ("thread", "thread?"),
+        ],
+    ),
+    (
+        "conversation",
+        &[
+            ("robot", "index"),
+            ("agent", "text"),
+            ("conversation_id", "text"),
+            ("state", "text"),
+            ("over", "bool"),
+        ],
+    ),
+    (
+        "service",
+        &[
+            ("robot", "index"),
+            ("agent", "text"),
+            ("service", "text"),
+            ("running", "bool"),
+            ("subgoal", "text?"),
+        ],
+    ),
+    ("life", &[("robot", "index"), ("agent", "text"), ("status", "text"), ("reason", "text")]),
+    (
+        "device",
+        &[("robot", "index"), ("agent", "text"), ("device", "text"), ("unit", "text?"), ("waiting", "index")],
     ),
 ];
 
@@ -154,6 +183,11 @@ pub(crate) fn kind(event: &Event) -> usize {
         Event::Switch { .. } => 21,
         Event::Completion { .. } => 22,
         Event::Miss { .. } => 23,
+        Event::Acl { .. } => 24,
+        Event::Conversation { .. } => 25,
+        Event::Service { .. } => 26,
+        Event::Life { .. } => 27,
+        Event::Device { .. } => 28,
     }
 }
 
@@ -197,6 +231,9 @@ fn member_schema(ty: &str) -> &'static str {
         "bool" => r#"{"type":"boolean"}"#,
         "number" => r#"{"type":["number","string"]}"#,
         "numbers" => r#"{"type":"array","items":{"type":["number","string"]}}"#,
+        "thread" => {
+            r#"{"type":"object","properties":{"conversation_id":{"type":"string"},"protocol":{"type":"string"},"ontology":{"type":"string"},"reply_with":{"type":"string"},"in_reply_to":{"type":"string"},"reply_by":{"type":"integer","description":"nanoseconds of virtual time"}}}"#
+        }
         "pairs" => r#"{"type":"array","items":{"type":"array","items":{"type":"string"}}}"#,
         _ => "{}",
     }

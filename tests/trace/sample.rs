@@ -3,7 +3,7 @@
 use soifra::trace_file::{Header, Trace};
 use soifra_graph::{Name, Value};
 use soifra_runtime::scene::{Part, PlatformScene, RobotScene, Scene};
-use soifra_runtime::{Event, Record, Time};
+use soifra_runtime::{Event, Record, Thread, Time};
 use std::collections::BTreeMap;
 
 fn part(role: &str, name: &str, model: &str, args: &[(&str, Value)]) -> Part {
@@ -150,13 +150,7 @@ pub fn every_kind() -> Vec<Event> {
             result: "success".into(),
         },
         Event::State { robot: 0, agent: agent(), state: "arrived".into(), registers: numbers() },
-        Event::Message {
-            robot: 0,
-            agent: agent(),
-            topic: "plan".into(),
-            registers: numbers(),
-            to: Some("x".into()),
-        },
+        Event::Message { robot: 0, agent: agent(), topic: "plan".into(), registers: numbers() },
         Event::Delivery {
             robot: 1,
             agent: agent(),
@@ -172,7 +166,7 @@ pub fn every_kind() -> Vec<Event> {
         },
         Event::Command { robot: 0, actuator: 0, registers: numbers(), expires: Time::MAX },
         Event::SafeAction { robot: 2, action: "stop".into(), reason: text() },
-        Event::Param { param: "speed".into(), registers: numbers() },
+        Event::Param { agent: agent(), param: "speed".into(), registers: numbers() },
         Event::Note { robot: 0, agent: agent(), text: text() },
         Event::Pose { robot: 0, pose: pose(0.1, 0.2, 0.3), path_m: 0.3 },
         Event::Pose { robot: 0, pose: [f64::NAN; 7], path_m: f64::INFINITY },
@@ -185,6 +179,51 @@ pub fn every_kind() -> Vec<Event> {
         Event::Expectation { index: 1, robot: None, held: true, margin: Some(f64::INFINITY) },
         Event::Fault { robot: None, agent: agent(), text: text() },
         Event::End { outcome: "failed".into(), reason: text() },
+        Event::Deferral { robot: 0, agent: agent(), unit: "brake".into(), until: Time(9) },
+        Event::Switch { robot: 0, core: 1, agent: Some(agent()), unit: Some("brake".into()) },
+        Event::Switch { robot: 0, core: 1, agent: None, unit: None },
+        Event::Completion {
+            robot: 0,
+            agent: agent(),
+            unit: "brake".into(),
+            release: Time(1),
+            start: Time(2),
+            rounds: Some(3),
+        },
+        Event::Miss { robot: 0, agent: agent(), unit: "brake".into(), release: Time(1), deadline: Time(5) },
+        Event::Acl {
+            robot: 0,
+            performative: "request".into(),
+            sender: agent(),
+            receiver: "df@host".into(),
+            content: Some("Offer".into()),
+            registers: numbers(),
+            reason: Some(text()),
+            thread: Box::new(Thread {
+                conversation_id: Some("c1".into()),
+                protocol: Some("request".into()),
+                ontology: Some("parcels".into()),
+                reply_with: Some("m1".into()),
+                in_reply_to: Some("m0".into()),
+                reply_by: Some(Time(7)),
+            }),
+        },
+        Event::Conversation {
+            robot: 0,
+            agent: agent(),
+            conversation_id: "c1".into(),
+            state: "asked".into(),
+            over: false,
+        },
+        Event::Service {
+            robot: 0,
+            agent: agent(),
+            service: "drive".into(),
+            running: true,
+            subgoal: Some("navigate".into()),
+        },
+        Event::Life { robot: 0, agent: agent(), status: "dead".into(), reason: text() },
+        Event::Device { robot: 0, agent: agent(), device: "camera".into(), unit: None, waiting: 2 },
     ]
 }
 

@@ -182,7 +182,9 @@ impl Engine<'_> {
             }
             Item::SetParam { param, registers } => {
                 let registers = log.get(registers).to_vec();
+                let agent = if self.recorder.on() { self.names(unit).0 } else { String::new() };
                 self.recorder.record(now, cause, || Event::Param {
+                    agent,
                     param: mission
                         .graph
                         .params
@@ -258,7 +260,7 @@ impl Engine<'_> {
             let (agent, _) = self.names(unit);
             let topic = self.mission.topics[topic as usize].name.to_string();
             let registers = registers.to_vec();
-            self.recorder.record(now, cause, || Event::Message { robot, agent, topic, registers, to: None })
+            self.recorder.record(now, cause, || Event::Message { robot, agent, topic, registers })
         } else {
             None
         };
@@ -311,12 +313,15 @@ impl Engine<'_> {
         let sender = &mission.graph.agents[who.agent as usize].name;
         let topic = format!("{} {}", told.performative, told.content);
         let robot = &self.scene.robots[who.robot as usize].name;
-        let record = self.recorder.record(now, cause, || Event::Message {
+        let record = self.recorder.record(now, cause, || Event::Acl {
             robot: who.robot,
-            agent,
-            topic: topic.clone(),
+            performative: told.performative.to_string(),
+            sender: agent,
+            receiver: format!("{}@{robot}", told.to),
+            content: Some(told.content.to_string()),
             registers: registers.clone(),
-            to: Some(format!("{}@{robot}", told.to)),
+            reason: None,
+            thread: Box::default(),
         });
         let mut to = Vec::new();
         for i in self.cast.of_robot(who.robot) {

@@ -3,7 +3,7 @@
 pub(crate) mod exact;
 pub mod record;
 
-pub use record::{Event, Record};
+pub use record::{Event, Record, Thread};
 
 use crate::{Snapshot, Time};
 

@@ -18,6 +18,35 @@ pub struct Record {
     pub event: Event,
 }
 
+/// What ties a FIPA-ACL message to others.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Thread {
+    /// The conversation it belongs to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conversation_id: Option<String>,
+    /// Its protocol.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub protocol: Option<String>,
+    /// The ontology of its content.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ontology: Option<String>,
+    /// What an answer refers to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reply_with: Option<String>,
+    /// What it answers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub in_reply_to: Option<String>,
+    /// When an answer comes too late.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reply_by: Option<Time>,
+}
+
+impl Thread {
+    fn is_empty(&self) -> bool {
+        *self == Thread::default()
+    }
+}
+
 /// What happened. Agents are `agent@robot`; values are in register form unless said otherwise.
 #[allow(missing_docs, reason = "the fields are what the comment of their variant says")]
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -81,15 +110,51 @@ pub enum Event {
         #[serde(with = "exact::registers")]
         registers: Vec<f64>,
     },
-    /// A message was published or told.
+    /// A message was published on a topic.
     Message {
         robot: u32,
         agent: String,
         topic: String,
         #[serde(with = "exact::registers")]
         registers: Vec<f64>,
+    },
+    /// A FIPA-ACL message was sent. `content` is the record it carries, if it does.
+    Acl {
+        robot: u32,
+        performative: String,
+        sender: String,
+        receiver: String,
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        to: Option<String>,
+        content: Option<String>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty", with = "exact::registers")]
+        registers: Vec<f64>,
+        /// A reason in words, as that of a refusal.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reason: Option<String>,
+        #[serde(default, skip_serializing_if = "Thread::is_empty")]
+        thread: Box<Thread>,
+    },
+    /// A conversation of an agent went into another state; in the last one it is over.
+    Conversation { robot: u32, agent: String, conversation_id: String, state: String, over: bool },
+    /// A service of an agent was started or stopped; for a sub-goal, when the planner-matcher did it.
+    Service {
+        robot: u32,
+        agent: String,
+        service: String,
+        running: bool,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        subgoal: Option<String>,
+    },
+    /// An agent is `running`, `dead`, `restarted`; and why.
+    Life { robot: u32, agent: String, status: String, reason: String },
+    /// A device of an agent is used by a unit, or free; so many wait for it.
+    Device {
+        robot: u32,
+        agent: String,
+        device: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        unit: Option<String>,
+        waiting: u32,
     },
     /// A message was delivered to a mailbox, or dropped on the way (`dropped` says why).
     Delivery {
@@ -112,8 +177,9 @@ pub enum Event {
     },
     /// A safe action began, and why.
     SafeAction { robot: u32, action: String, reason: String },
-    /// A parameter changed.
+    /// A parameter was changed by an agent.
     Param {
+        agent: String,
         param: String,
         #[serde(with = "exact::registers")]
         registers: Vec<f64>,

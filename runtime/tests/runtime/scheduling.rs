@@ -89,7 +89,7 @@ agent pilot {
 "#);
     assert_eq!(notes(&ran), ["0 gain: 1", "50 gain: 2", "100 gain: 2", "150 gain: 3"]);
     let set = ran.all(|r| match &r.event {
-        soifra_runtime::Event::Param { param, registers } => Some((param.clone(), registers.clone())),
+        soifra_runtime::Event::Param { param, registers, .. } => Some((param.clone(), registers.clone())),
         _ => None,
     });
     assert_eq!(set, [("gain".to_string(), vec![2.0]), ("gain".to_string(), vec![3.0])]);
