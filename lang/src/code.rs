@@ -62,6 +62,10 @@ codes! {
     LATE = "S0515", "A deadline that can be missed";
     OVERLOAD = "S0516", "A core that cannot keep up";
     UNLIMITED = "S0517", "A load without a limit";
+    MESSAGE = "S0518", "A message that the protocol does not have";
+    STUCK = "S0519", "A conversation that can get stuck";
+    PROTOCOL = "S0520", "A protocol that cannot be followed";
+    NOBODY = "S0521", "A conversation without a partner";
 
     TRUTH = "S0601", "Truth in a behaviour";
     FRAMES = "S0602", "Frames are mixed";

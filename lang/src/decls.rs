@@ -22,6 +22,10 @@ pub struct Decls<'a> {
     pub constants: Table<'a, Constant>,
     /// `topic`, in order
     pub topics: Vec<&'a Topic>,
+    /// `protocol`
+    pub protocols: Table<'a, Protocol>,
+    /// `conversation`, in order
+    pub conversations: Vec<&'a Conversation>,
     /// `param`, in order
     pub params: Vec<&'a Param>,
     /// `agent`, in order
@@ -86,6 +90,8 @@ impl<'a> Decls<'a> {
                     }
                     Item::Constant(c) => drop(d.constants.insert(key, c)),
                     Item::Topic(t) => d.topics.push(t),
+                    Item::Protocol(p) => drop(d.protocols.insert(key, p)),
+                    Item::Conversation(c) => d.conversations.push(c),
                     Item::Param(p) => d.params.push(p),
                     Item::Test(t) => d.tests.push(t),
                 }
@@ -108,6 +114,8 @@ impl Item {
             Item::Function(x) => &x.name,
             Item::Constant(x) => &x.name,
             Item::Topic(x) => &x.name,
+            Item::Protocol(x) => &x.name,
+            Item::Conversation(x) => &x.name,
             Item::Param(x) => &x.name,
             Item::Test(x) => &x.name,
         }

@@ -5,7 +5,6 @@
 pub mod ast;
 pub mod check;
 pub mod code;
-#[cfg_attr(not(test), expect(dead_code, unused_imports, reason = "until protocols are part of the language"))]
 pub(crate) mod conversation;
 mod decls;
 mod explain;

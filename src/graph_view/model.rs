@@ -2,7 +2,7 @@
 
 use super::reach::{self, Reach};
 use soifra_graph::{
-    Agent, Conjunct, Expr, Graph, MachineState, PlanKind, PlanNode, Span, Strategy, Trigger, Unit, UnitKind,
+    Agent, Conjunct, Expr, Graph, MachineState, PlanKind, PlanNode, Span, Strategy, Talk, Trigger, Unit, UnitKind,
 };
 use std::collections::BTreeMap;
 
@@ -227,6 +227,14 @@ impl Builder<'_> {
                 format!("on {}", self.graph.topics.get(*topic as usize).map_or("?", |t| &t.channel.name))
             }
             Trigger::Told { performative, content, .. } => format!("on {performative} {content}"),
+            Trigger::Talk { conversation, what, .. } => {
+                let of = self.graph.conversations.get(*conversation as usize).map_or("?", |c| &c.name);
+                match what {
+                    Talk::Message { performative, .. } => format!("on {of} {performative}"),
+                    Talk::Timeout => format!("on {of} timeout"),
+                    Talk::Settled => format!("on {of} settled"),
+                }
+            }
             Trigger::Reading(p) => format!("on {}", reach::port(agent, true, *p)),
             Trigger::Event(e) => format!("on {}", agent.events.get(*e as usize).map_or("?", |n| n)),
         }

@@ -24,7 +24,10 @@ impl Reach {
             Trigger::Message { topic, .. } => _ = r.heard.insert(*topic),
             Trigger::Reading(port) => _ = r.readings.insert(*port),
             Trigger::Event(e) => _ = r.waits.insert(*e),
-            Trigger::Every { .. } | Trigger::Step { .. } | Trigger::Told { .. } => {}
+            Trigger::Every { .. }
+            | Trigger::Step { .. }
+            | Trigger::Told { .. }
+            | Trigger::Talk { .. } => {}
         }
         r.block(&unit.prelude);
         match &unit.kind {
@@ -81,6 +84,14 @@ impl Reach {
             StmtKind::Publish(topic, e) => {
                 self.publishes.insert(*topic);
                 self.expr(e);
+            }
+            StmtKind::Open(o) => {
+                o.content.iter().chain([&o.to]).chain(&o.within).for_each(|e| self.expr(e));
+            }
+            StmtKind::Reply(r) => r.content.iter().chain([&r.thread]).for_each(|e| self.expr(e)),
+            StmtKind::Each(each) => {
+                self.expr(&each.list);
+                self.block(&each.body);
             }
             StmtKind::Refine(r) => {
                 [&r.first, &r.step].into_iter().chain(&r.until).for_each(|e| self.expr(e));

@@ -141,10 +141,38 @@ pub enum Trigger {
         /// Local for the content.
         local: u32,
     },
+    /// When something happens in a conversation of this agent.
+    Talk {
+        /// Conversation.
+        conversation: u32,
+        /// What.
+        what: Talk,
+        /// Local for the other agent.
+        sender: u32,
+        /// Local for the conversation.
+        thread: u32,
+    },
     /// When a reading of a sensor port is delivered.
     Reading(u32),
     /// When an event of the agent is raised.
     Event(u32),
+}
+
+/// What may happen in a conversation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Talk {
+    /// A message comes.
+    Message {
+        /// Performative, lower case.
+        performative: Name,
+        /// Local for the content, when there is one.
+        content: Option<u32>,
+    },
+    /// Nothing has come in time.
+    Timeout,
+    /// Everybody whom one message opened the conversation with has answered, or the time is over.
+    Settled,
 }
 
 /// Declared timing; durations constant at the start of a run. Analysed by the checker, charged by the
@@ -246,6 +274,12 @@ pub enum StmtKind {
     },
     /// Writes a remark into the trace.
     Note(String, Option<Expr>),
+    /// Opens a conversation with one agent or each of a list.
+    Open(Box<Open>),
+    /// Says something in a conversation that is going on.
+    Reply(Box<Reply>),
+    /// Statements for each item of a list.
+    Each(Box<Each>),
     /// Improves a value round by round while the budget of the unit lasts; directly in a service only.
     Refine(Box<Refine>),
     /// Raises an event of the agent.
@@ -278,6 +312,51 @@ pub enum StmtKind {
     },
     /// The first rule whose guard holds acts; the trace says which.
     Rules(Vec<Rule>),
+}
+
+/// The first message of a conversation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Open {
+    /// Conversation.
+    pub conversation: u32,
+    /// Performative, lower case.
+    pub performative: Name,
+    /// A record, when the protocol wants one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub content: Option<Expr>,
+    /// An `Agent`, or a list of them.
+    pub to: Expr,
+    /// How long to wait for answers, in place of what the protocol says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<Expr>,
+}
+
+/// A further message of a conversation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reply {
+    /// Conversation.
+    pub conversation: u32,
+    /// Performative, lower case.
+    pub performative: Name,
+    /// A record, when the protocol wants one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub content: Option<Expr>,
+    /// Why, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Which one: a `Conversation<…>`.
+    pub thread: Expr,
+}
+
+/// A loop over a list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Each {
+    /// The list.
+    pub list: Expr,
+    /// Local for the item.
+    pub local: u32,
+    /// What is done.
+    pub body: Vec<Stmt>,
 }
 
 /// What an anytime service improves.

@@ -127,6 +127,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "channel(delay: Duration = 1 us, loss: Number = 0, range: Length? = none, lifetime: Duration? = none, capacity: Int = 16)",
         "How messages travel: delay, chance of loss for each receiver, radio range (everywhere when none), how long the latest message counts (two periods of the publisher when none), how many senders are heard or messages wait",
     ),
+    (
+        "conversation",
+        "channel(delay: Duration = 1 us, loss: Number = 0, capacity: Int = 64)",
+        "How messages travel: delay, chance of loss, how many wait for a unit",
+    ),
 ];
 
 /// Every model.

@@ -191,6 +191,8 @@ pub enum Op {
     Now,
     /// Steps since the run began: `Steps`.
     StepCount,
+    /// The agents that offer a service, first registered first: `List<Agent, 64>`.
+    Offering(Name),
     /// Time since the current machine state was entered: `Duration`.
     Elapsed,
     /// What the robot knows of itself.

@@ -7,6 +7,7 @@
 
 pub mod behaviour;
 pub mod component;
+pub mod conversation;
 pub mod diagnostic;
 pub mod dim;
 pub mod eval;
@@ -22,6 +23,7 @@ pub mod typing;
 pub mod value;
 
 pub use behaviour::*;
+pub use conversation::{Conversation, ProtocolMove, ProtocolState, Role};
 pub use diagnostic::{Diagnostic, Label, Severity, did_you_mean};
 pub use dim::{Dim, Unit as QuantityUnit};
 pub use expr::{Binary, Execution, Expr, ListOp, Op, Own, Part, Quantifier, Run, Truth, UserFunction};

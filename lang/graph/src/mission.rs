@@ -1,6 +1,6 @@
 //! The graph: everything a run is a function of, besides seed and recorded inputs.
 
-use crate::{Agent, Expr, Name, Source, Span, Texts, Type, TypeTable, UserFunction, Value, span};
+use crate::{Agent, Conversation, Expr, Name, Source, Span, Texts, Type, TypeTable, UserFunction, Value, span};
 use serde::{Deserialize, Serialize};
 
 /// Version of the graph's form; a reader refuses others.
@@ -33,6 +33,9 @@ pub struct Graph {
     pub platforms: Vec<Platform>,
     /// Topics.
     pub topics: Vec<Topic>,
+    /// Conversations.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conversations: Vec<Conversation>,
     /// Agent types.
     pub agents: Vec<Agent>,
     /// Robots, or arrays of them.

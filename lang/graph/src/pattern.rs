@@ -255,6 +255,7 @@ fn parse_nested(text: &str, depth: usize) -> Result<Pattern, String> {
                 (Pattern::Exact(t), Ok(n)) => Pattern::Exact(Type::List(Box::new(t), n)),
                 (p, _) => Pattern::List(Box::new(p), (*n).to_string()),
             }),
+            ("Conversation", [name]) => exact(Type::Conversation((*name).into())),
             ("Matrix", [r, c]) => {
                 let size = |s: &str| s.parse::<u8>().ok().filter(|n| (1..=8).contains(n)).ok_or_else(bad);
                 exact(Type::Matrix(size(r)?, size(c)?))
@@ -276,6 +277,7 @@ fn parse_nested(text: &str, depth: usize) -> Result<Pattern, String> {
         "Int" => exact(Type::Int),
         "Text" => exact(Type::Text),
         "Twist" => exact(Type::Twist),
+        "Agent" => exact(Type::Agent),
         _ if Dim::named(text).is_some() => exact(Type::Quantity(Dim::named(text).unwrap_or_default())),
         _ if text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !text.is_empty() => {
             exact(Type::Record(text.into()))

@@ -67,6 +67,10 @@ pub enum Type {
     Range(Dim),
     /// `Distribution<Length>`: something to draw from.
     Distribution(Dim),
+    /// `Agent`: an agent on a robot or host.
+    Agent,
+    /// `Conversation<deliver>`: a conversation that is going on.
+    Conversation(Name),
     /// An opaque handle (`Image`), owned by a service.
     Handle(Name),
 }
@@ -117,6 +121,8 @@ impl fmt::Display for Type {
             Type::Matrix(r, c) => write!(f, "Matrix<{r}, {c}>"),
             Type::Range(d) => write!(f, "Range<{d}>"),
             Type::Distribution(d) => write!(f, "Distribution<{d}>"),
+            Type::Agent => f.write_str("Agent"),
+            Type::Conversation(n) => write!(f, "Conversation<{n}>"),
             Type::Handle(n) => write!(f, "handle {n}"),
         }
     }
@@ -181,7 +187,7 @@ impl TypeTable {
         }
         let w = match t {
             Type::Bool | Type::Int | Type::Quantity(_) | Type::Text | Type::Heading(_) => 1,
-            Type::Enum(_) | Type::Handle(_) => 1,
+            Type::Enum(_) | Type::Handle(_) | Type::Agent | Type::Conversation(_) => 1,
             Type::Point(_) | Type::Vector(..) => 3,
             Type::Pose(_) => 7,
             Type::Twist => 6,

@@ -108,7 +108,10 @@ impl Value {
         let end = out.len() + table.width(t);
         match (self, t) {
             (Value::Bool(b), Type::Bool) => out.push(f64::from(u8::from(*b))),
-            (Value::Int(i), Type::Int | Type::Quantity(_) | Type::Handle(_)) => out.push(*i as f64),
+            (
+                Value::Int(i),
+                Type::Int | Type::Quantity(_) | Type::Handle(_) | Type::Agent | Type::Conversation(_),
+            ) => out.push(*i as f64),
             (Value::Number(x), Type::Quantity(_) | Type::Heading(_)) => out.push(*x),
             (Value::Text(s), Type::Text) => out.push(texts.intern(s) as f64),
             (Value::Variant(v), Type::Enum(n)) => {
@@ -160,7 +163,7 @@ impl Value {
         let at = |i: usize| r.get(i).copied().unwrap_or(0.0);
         match t {
             Type::Bool => Value::Bool(at(0) != 0.0),
-            Type::Int | Type::Handle(_) => Value::Int(at(0) as i64),
+            Type::Int | Type::Handle(_) | Type::Agent | Type::Conversation(_) => Value::Int(at(0) as i64),
             Type::Quantity(_) | Type::Heading(_) => Value::Number(at(0)),
             Type::Text => Value::Text(texts.get(at(0) as usize).to_string()),
             Type::Enum(n) => {

@@ -104,6 +104,8 @@ pub enum TriggerKind {
     Told(Ident, Ident, Ident, Option<Ident>),
     /// `on topic(x)`
     Topic(Ident, Ident),
+    /// `on conversation refuse`
+    Talk(Ident, Ident),
 }
 
 /// A timing clause.

@@ -17,6 +17,32 @@ pub struct Stmt {
 pub enum StmtKind {
     /// `let`
     Let(Ident, Expr),
+    /// `open conversation performative content to agents within T`
+    Open {
+        /// Conversation.
+        conversation: Ident,
+        /// Performative.
+        performative: Ident,
+        /// A record.
+        content: Option<Expr>,
+        /// Whom.
+        to: Expr,
+        /// How long to wait.
+        within: Option<Expr>,
+    },
+    /// `reply performative content in conversation`
+    Reply {
+        /// Performative.
+        performative: Ident,
+        /// A record.
+        content: Option<Expr>,
+        /// Why.
+        reason: Option<String>,
+        /// Which; the one at hand when absent.
+        thread: Option<Expr>,
+    },
+    /// `for item in list { … }`
+    For(Ident, Expr, Vec<Stmt>),
     /// `refine name = first by step cost c until u`
     Refine {
         /// What it binds.

@@ -66,6 +66,10 @@ pub enum Item {
     Constant(Constant),
     /// `topic`
     Topic(Topic),
+    /// `protocol`
+    Protocol(Protocol),
+    /// `conversation`
+    Conversation(Conversation),
     /// `param`
     Param(Param),
     /// `test`
@@ -110,6 +114,58 @@ pub struct Enum {
     pub name: Ident,
     /// Variants.
     pub variants: Vec<Ident>,
+}
+
+/// `protocol`
+#[derive(Debug, Clone)]
+pub struct Protocol {
+    /// Name.
+    pub name: Ident,
+    /// Names that stand for contents.
+    pub contents: Vec<Ident>,
+    /// Parameters.
+    pub params: Vec<(Ident, TypeRef)>,
+    /// States, the first is the initial one.
+    pub states: Vec<ProtocolState>,
+}
+
+/// A state of a protocol.
+#[derive(Debug, Clone)]
+pub struct ProtocolState {
+    /// Name.
+    pub name: Ident,
+    /// Messages.
+    pub moves: Vec<ProtocolMove>,
+    /// Time-outs: after, where.
+    pub timeouts: Vec<(Expr, Ident)>,
+}
+
+/// `initiator cfp Task -> called`
+#[derive(Debug, Clone)]
+pub struct ProtocolMove {
+    /// Who.
+    pub by: Ident,
+    /// What.
+    pub performative: Ident,
+    /// With what.
+    pub content: Option<Ident>,
+    /// Where it leads.
+    pub target: Ident,
+}
+
+/// `conversation deliver: contract_net<Parcel, Bid, Receipt>(…) = channel(…)`
+#[derive(Debug, Clone)]
+pub struct Conversation {
+    /// Name.
+    pub name: Ident,
+    /// Protocol.
+    pub protocol: Ident,
+    /// Contents.
+    pub contents: Vec<Ident>,
+    /// Arguments of the protocol.
+    pub args: Vec<Arg>,
+    /// Channel model and arguments.
+    pub channel: Option<(Ident, Vec<Arg>)>,
 }
 
 /// `interface`

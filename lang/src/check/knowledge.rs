@@ -70,7 +70,7 @@ fn one(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
                 .at(e.span, "would differ from evaluation to evaluation")
                 .hint("draws belong to worlds, robots and behaviours"),
         ),
-        Op::Reading(_) | Op::Heard(_) if kind != Kind::Behaviour => out.push(
+        Op::Reading(_) | Op::Heard(_) | Op::Offering(_) if kind != Kind::Behaviour => out.push(
             Diagnostic::error(code::BELIEF, "there is nothing to read here")
                 .at(e.span, "no robot is running yet, or none is meant")
                 .hint("keep what matters in a `state` and name that"),

@@ -8,6 +8,7 @@ mod capability;
 mod clock;
 mod computable;
 mod constants;
+mod conversations;
 mod effects;
 mod events;
 mod form;
@@ -48,6 +49,7 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(arbitration::check(graph));
     out.extend(reachability::check(graph));
     out.extend(topics::check(graph));
+    out.extend(conversations::check(graph));
     out.extend(events::check(graph));
     out.extend(timing::check(graph));
     out.extend(anytime::check(graph));

@@ -68,6 +68,21 @@ impl<'a> Types<'a> {
                 self.lone(e, &[Type::Int]);
             }
         }
+        for c in &g.conversations {
+            let n = c.states.len();
+            for s in &c.states {
+                let known = |m: &soifra_graph::ProtocolMove| {
+                    (m.target as usize) < n && m.content.as_ref().is_none_or(|r| g.types.records.contains_key(r))
+                };
+                if !s.moves.iter().all(known) || s.timeout.as_ref().is_some_and(|t| t.1 as usize >= n) {
+                    self.bad(s.at, "a protocol leads nowhere");
+                }
+                if let Some((after, _)) = &s.timeout {
+                    self.want(after, &Type::Quantity(Dim::TIME));
+                    self.lone(after, &[]);
+                }
+            }
+        }
         for a in &g.agents {
             self.agent(a);
         }
@@ -170,6 +185,23 @@ impl<'a> Types<'a> {
                 {
                     self.bad(u.span, "a message of another type");
                 }
+                Trigger::Talk { conversation, what, sender, thread } => {
+                    let local = |l: u32| u.locals.get(l as usize);
+                    let c = self.g.conversations.get(*conversation as usize);
+                    let names = local(*sender) == Some(&Type::Agent)
+                        && c.is_some_and(|c| local(*thread) == Some(&Type::Conversation(c.name.clone())));
+                    let content = match what {
+                        soifra_graph::Talk::Message { performative, content: Some(l) } => c.is_some_and(|c| {
+                            let mut moves = c.states.iter().flat_map(|s| &s.moves);
+                            let m = moves.find(|m| m.performative == *performative);
+                            m.and_then(|m| m.content.clone()).map(Type::Record).as_ref() == local(*l)
+                        }),
+                        _ => true,
+                    };
+                    if !names || !content {
+                        self.bad(u.span, "a conversation of another type");
+                    }
+                }
                 Trigger::Reading(p) if *p as usize >= a.sensors.len() => self.bad(u.span, "no such sensor"),
                 Trigger::Event(e) if *e as usize >= a.events.len() => self.bad(u.span, "no such event"),
                 _ => {}
@@ -254,6 +286,21 @@ impl<'a> Types<'a> {
             StmtKind::Publish(i, e) => (self.g.topics.get(*i as usize).map(|t| t.ty.clone()), e),
             StmtKind::SetParam(i, e) => (self.g.params.get(*i as usize).map(|p| p.ty.clone()), e),
             StmtKind::If(e, _, _) => (Some(Type::Bool), e),
+            StmtKind::Each(each) => {
+                let item = self.locals.get(each.local as usize);
+                if !matches!((&each.list.ty, item), (Type::List(t, n), Some(l)) if *n == 0 || **t == *l) {
+                    self.bad(s.at, "a loop over something else than its list");
+                }
+                return;
+            }
+            StmtKind::Open(o) => return self.message(s.at, o.conversation, &o.performative, o.content.as_ref()),
+            StmtKind::Reply(r) => {
+                let name = self.g.conversations.get(r.conversation as usize).map(|c| c.name.clone());
+                if name.is_none_or(|n| r.thread.ty != Type::Conversation(n)) {
+                    self.bad(s.at, "a reply in another conversation");
+                }
+                return self.message(s.at, r.conversation, &r.performative, r.content.as_ref());
+            }
             StmtKind::Refine(r) => {
                 self.want(&r.cost, &Type::Quantity(Dim::TIME));
                 r.until.iter().for_each(|u| self.want(u, &Type::Bool));
@@ -266,6 +313,17 @@ impl<'a> Types<'a> {
         match wanted {
             (Some(t), e) => self.want(e, &t),
             (None, _) => self.bad(s.at, "a statement about something that is not declared"),
+        }
+    }
+
+    /// A message that its conversation must have, with what it carries.
+    fn message(&mut self, at: Span, conversation: u32, performative: &str, content: Option<&Expr>) {
+        let c = self.g.conversations.get(conversation as usize);
+        let mut moves = c.into_iter().flat_map(|c| &c.states).flat_map(|s| &s.moves);
+        let wanted = moves.find(|m| &*m.performative == performative).map(|m| m.content.clone());
+        let given = content.map(|e| e.ty.clone());
+        if wanted.is_none_or(|w| w.map(Type::Record) != given) {
+            self.bad(at, "a message that its conversation does not have");
         }
     }
 
@@ -324,6 +382,7 @@ impl<'a> Types<'a> {
             Op::Believed(a, s) => {
                 is(self.g.agents.get(*a as usize).and_then(|a| a.states.get(*s as usize)).map(|s| &s.ty))
             }
+            Op::Offering(_) => matches!(&e.ty, Type::List(t, _) if **t == Type::Agent),
             Op::Executed(a, u, which) => {
                 let unit = self.g.agents.get(*a as usize).and_then(|a| a.units.get(*u as usize));
                 unit.is_some() && e.ty == typing::execution(*which)
@@ -444,7 +503,7 @@ fn name(op: &Op) -> String {
 /// Whether a value is one of type `t`.
 fn is_a(v: &Value, t: &Type, g: &Graph) -> bool {
     match (v, t) {
-        (Value::Int(i), Type::Handle(_)) => *i >= 0,
+        (Value::Int(i), Type::Handle(_) | Type::Agent | Type::Conversation(_)) => *i >= 0,
         (Value::Text(_), Type::Text) => true,
         (Value::Bool(_), Type::Bool) | (Value::Int(_), Type::Int) => true,
         (Value::Number(x), Type::Quantity(_) | Type::Heading(_)) => x.is_finite(),

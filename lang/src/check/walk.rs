@@ -118,6 +118,7 @@ fn nested<'a>(s: &'a Stmt, out: &mut Vec<&'a Stmt>) {
             arms.iter().map(|(_, b)| b).chain(rest).flatten().for_each(|s| nested(s, out))
         }
         StmtKind::Rules(rules) => rules.iter().flat_map(|r| &r.body).for_each(|s| nested(s, out)),
+        StmtKind::Each(each) => each.body.iter().for_each(|s| nested(s, out)),
         _ => {}
     }
 }
@@ -130,6 +131,9 @@ fn expressions_of<'a>(s: &'a Stmt, visit: &mut dyn FnMut(&'a Expr)) {
         | StmtKind::Command(_, e)
         | StmtKind::Publish(_, e)
         | StmtKind::SetParam(_, e) => e.walk(visit),
+        StmtKind::Open(o) => o.content.iter().chain([&o.to]).chain(&o.within).for_each(|e| e.walk(visit)),
+        StmtKind::Reply(r) => r.content.iter().chain([&r.thread]).for_each(|e| e.walk(visit)),
+        StmtKind::Each(each) => each.list.walk(visit),
         StmtKind::Refine(r) => {
             [&r.first, &r.step, &r.cost].into_iter().chain(&r.until).for_each(|e| e.walk(visit));
         }

@@ -96,6 +96,7 @@ pub struct Party {
 
 impl Party {
     /// A program that makes every move of its role and is never silent for ever.
+    #[cfg(test)]
     pub fn willing(protocol: &Protocol, role: Role) -> Party {
         let says = |s: &State| s.moves.iter().filter(|m| m.by == role).map(|m| m.message).collect();
         Party { can: protocol.states.iter().map(says).collect(), silent: vec![false; protocol.states.len()] }

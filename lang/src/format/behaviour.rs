@@ -8,7 +8,7 @@ impl Builder<'_, '_> {
     pub fn behaviour(&mut self, rule: Rule, node: Node<'_>) {
         match rule {
             Rule::guarded | Rule::when_stmt | Rule::match_stmt_arm => self.guarded(node),
-            Rule::on_enter | Rule::on_exit | Rule::if_stmt => self.guarded(node),
+            Rule::on_enter | Rule::on_exit | Rule::if_stmt | Rule::for_stmt => self.guarded(node),
             Rule::transition => self.transition(node),
             Rule::body => self.body(node),
             _ => self.expression(rule, node),
@@ -84,11 +84,17 @@ impl Builder<'_, '_> {
 /// Whether a statement has no statements inside.
 pub fn is_plain(stmt: &Node<'_>) -> bool {
     children(stmt.clone()).all(|c| {
-        !matches!(c.as_rule(), Rule::if_stmt | Rule::match_stmt | Rule::rules_stmt | Rule::when_stmt)
+        !matches!(
+            c.as_rule(),
+            Rule::if_stmt | Rule::for_stmt | Rule::match_stmt | Rule::rules_stmt | Rule::when_stmt
+        )
     })
 }
 
 /// Whether a statement is mostly braces, which open on its first line.
 fn is_blocky(stmt: &Node<'_>) -> bool {
-    children(stmt.clone()).all(|c| matches!(c.as_rule(), Rule::if_stmt | Rule::match_stmt | Rule::rules_stmt))
+    children(stmt.clone()).all(|c| matches!(
+        c.as_rule(),
+        Rule::if_stmt | Rule::for_stmt | Rule::match_stmt | Rule::rules_stmt
+    ))
 }

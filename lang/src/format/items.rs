@@ -13,6 +13,8 @@ impl Builder<'_, '_> {
             | Rule::mission
             | Rule::test
             | Rule::agent
+            | Rule::protocol
+            | Rule::protocol_state
             | Rule::machine
             | Rule::machine_state
             | Rule::plan
@@ -39,14 +41,15 @@ impl Builder<'_, '_> {
             Rule::subgoal | Rule::layer | Rule::expect_eventually => self.grouped_clauses(node),
             Rule::expect => self.expect(node),
             Rule::service | Rule::action => self.headed(node),
-            Rule::type_name => self.type_name(node),
+            Rule::type_name | Rule::protocol_contents => self.type_name(node),
+            Rule::open_stmt | Rule::reply_stmt => self.talk(node),
             Rule::params | Rule::args | Rule::tuple | Rule::list => self.bracketed(node),
             Rule::by_switch | Rule::layer_suppresses | Rule::platform_choice => self.bracketed(node),
             Rule::count => {
                 self.gap(Gap::Tight);
                 self.parts(node, |b, p| b.plain(p));
             }
-            Rule::entry | Rule::topic => self.parts(node, |b, p| b.plain(p)),
+            Rule::entry | Rule::topic | Rule::conversation => self.parts(node, |b, p| b.plain(p)),
             Rule::constant
             | Rule::param
             | Rule::slot
@@ -179,6 +182,26 @@ impl Builder<'_, '_> {
     fn grouped_clauses(&mut self, node: Node<'_>) {
         self.open();
         self.clauses(node);
+        self.close();
+    }
+
+    /// What is said to whom, in clauses that go on lines of their own when it is too long.
+    fn talk(&mut self, node: Node<'_>) {
+        self.open();
+        self.parts(node, |b, p| match p {
+            Part::Child(c) => match c.as_rule() {
+                Rule::K_TO => {
+                    b.indent(1);
+                    b.gap(Gap::Line);
+                    b.node(c);
+                    b.dedent();
+                }
+                Rule::open_within | Rule::reply_in => b.clause(c, 1),
+                Rule::expr => b.expr(c, 1),
+                _ => b.node(c),
+            },
+            p => b.plain(p),
+        });
         self.close();
     }
 

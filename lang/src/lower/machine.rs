@@ -119,7 +119,7 @@ impl<'a> Checker<'a> {
 fn zero(ty: &Type, types: &soifra_graph::TypeTable) -> Option<Value> {
     Some(match ty {
         Type::Bool => Value::Bool(false),
-        Type::Int => Value::Int(0),
+        Type::Int | Type::Agent | Type::Conversation(_) => Value::Int(0),
         Type::Quantity(_) | Type::Heading(_) => Value::Number(0.0),
         Type::Point(_) | Type::Vector(..) => Value::Vector([0.0; 3]),
         Type::Pose(_) => Value::Pose([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]),

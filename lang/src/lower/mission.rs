@@ -41,6 +41,7 @@ pub fn lower(
     let params = c.params(mission);
     c.interfaces_and_services(mission);
     c.topics();
+    c.conversations(program);
     let graph = match mission {
         Some(m) => c.mission(program, m, choice, params),
         None => {
@@ -69,6 +70,7 @@ impl<'a> Checker<'a> {
             function_index: BTreeMap::new(),
             broken: Default::default(),
             topics: Default::default(),
+            conversations: Default::default(),
             topic_capacity: Vec::new(),
             agent: Default::default(),
             agents: Default::default(),
@@ -230,6 +232,7 @@ impl<'a> Checker<'a> {
             world,
             platforms,
             topics: std::mem::take(&mut self.topics).into_items(),
+            conversations: std::mem::take(&mut self.conversations).into_items(),
             agents: std::mem::take(&mut self.agents).into_items(),
             robots,
             step,

@@ -3,6 +3,7 @@
 mod agent;
 mod arbiter;
 mod component;
+mod conversation;
 mod declarations;
 mod function;
 mod judgement;

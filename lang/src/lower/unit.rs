@@ -71,6 +71,19 @@ impl<'a> Checker<'a> {
                     return self.unknown_trigger("topic", topic, &names);
                 }
             },
+            TriggerKind::Talk(conversation, what) => return self.talk(conversation, what, None, body),
+            TriggerKind::Told(conversation, what, content, from)
+                if self.conversations.position(&conversation.name).is_some() =>
+            {
+                if let Some(f) = from {
+                    self.report(
+                        Diagnostic::error(code::SYNTAX, "a conversation has one partner")
+                            .at(f.span, "nobody else speaks in it")
+                            .hint("leave out `from`; the partner is `sender`"),
+                    );
+                }
+                return self.talk(conversation, what, Some(content), body);
+            }
             TriggerKind::Told(performative, content, name, from) => {
                 self.performative(performative)?;
                 if !self.types.records.contains_key(&content.name) {
@@ -92,6 +105,79 @@ impl<'a> Checker<'a> {
                 }
             }
         })
+    }
+
+    /// `on conversation performative(content)`, `on conversation timeout`, `on conversation settled`.
+    fn talk(
+        &mut self,
+        name: &ast::Ident,
+        what: &ast::Ident,
+        content: Option<&ast::Ident>,
+        body: &mut Body,
+    ) -> Option<Trigger> {
+        let Some(i) = self.conversations.position(&name.name) else {
+            let names: Vec<Name> = self.conversations.iter().map(|c| c.name.clone()).collect();
+            return self.unknown_trigger("conversation", name, &names);
+        };
+        let whole = ["timeout", "settled"].contains(&&*what.name);
+        if let (true, Some(c)) = (whole, content) {
+            self.report(
+                Diagnostic::error(code::MESSAGE, format!("`{}` is no message", what.name))
+                    .at(c.span, "there is nothing to name")
+                    .hint(format!("write `on {} {}`", name.name, what.name)),
+            );
+            return None;
+        }
+        let mut local = |n: &str, ty: Type| body.bind(&ast::Ident { name: n.into(), span: what.span }, &ty);
+        let sender = local("sender", Type::Agent);
+        let thread = local("conversation", Type::Conversation(name.name.clone()));
+        body.thread = Some((i as u32, thread));
+        let event = match &*what.name {
+            "timeout" => soifra_graph::Talk::Timeout,
+            "settled" => soifra_graph::Talk::Settled,
+            _ => {
+                let carried = self.carried(i, what)?;
+                let content = match (content, carried) {
+                    (Some(n), Some(record)) => Some(body.bind(n, &Type::Record(record))),
+                    (None, _) => None,
+                    (Some(n), None) => {
+                        self.report(
+                            Diagnostic::error(code::MESSAGE, format!("`{}` carries nothing here", what.name))
+                                .at(n.span, "no content")
+                                .hint(format!("write `on {} {}`", name.name, what.name)),
+                        );
+                        return None;
+                    }
+                };
+                soifra_graph::Talk::Message { performative: what.name.clone(), content }
+            }
+        };
+        Some(Trigger::Talk { conversation: i as u32, what: event, sender, thread })
+    }
+
+    /// What a message of a conversation carries; reports one that the protocol does not have.
+    #[allow(
+        clippy::option_option,
+        reason = "outer: whether there is such a message, inner: whether it carries something; 2026-11"
+    )]
+    pub fn carried(&mut self, conversation: usize, what: &ast::Ident) -> Option<Option<Name>> {
+        let c = &self.conversations[conversation];
+        let moves = || c.states.iter().flat_map(|s| &s.moves);
+        if let Some(m) = moves().find(|m| m.performative == what.name) {
+            return Some(m.content.clone());
+        }
+        let mut known: Vec<String> = moves().map(|m| m.performative.to_string()).collect();
+        known.dedup();
+        let mut d = unknown(
+            code::MESSAGE,
+            &format!("message of `{}`", c.name),
+            &what.name,
+            what.span,
+            known.iter().map(String::as_str),
+        );
+        d.title = format!("protocol `{}` has no `{}`", c.protocol, what.name);
+        self.report(d.at(self.conversations[conversation].at, "this conversation"));
+        None
     }
 
     fn unknown_trigger<T>(&mut self, what: &str, name: &ast::Ident, known: &[Name]) -> Option<T> {

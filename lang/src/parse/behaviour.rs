@@ -164,6 +164,7 @@ impl Builder {
                     (self.ident(&mut c), self.ident(&mut c), self.ident(&mut c));
                 TriggerKind::Told(performative, content, local, c.take(Rule::ident).map(|p| self.name(&p)))
             }
+            Rule::on_talk => TriggerKind::Talk(self.ident(&mut c), self.ident(&mut c)),
             _ => TriggerKind::Topic(self.ident(&mut c), self.ident(&mut c)),
         };
         Trigger { kind, span }
@@ -330,6 +331,27 @@ impl Builder {
         let mut c = Cursor::new(p);
         let kind = match rule {
             Rule::let_stmt => StmtKind::Let(self.ident(&mut c), self.expr_in(&mut c)),
+            Rule::open_stmt => {
+                let (conversation, performative) = (self.ident(&mut c), self.ident(&mut c));
+                let content = c.take(Rule::expr).map(|e| self.expr(e));
+                let to = match c.take(Rule::open_to) {
+                    Some(p) => self.expr_in(&mut Cursor::new(p)),
+                    None => self.expr_in(&mut c),
+                };
+                let within = c.take(Rule::open_within).map(|p| self.expr_in(&mut Cursor::new(p)));
+                StmtKind::Open { conversation, performative, content, to, within }
+            }
+            Rule::reply_stmt => {
+                let performative = self.ident(&mut c);
+                let reason = c.take(Rule::string).map(|p| unquote(p.as_str()));
+                let content = c.take(Rule::expr).map(|e| self.expr(e));
+                let thread = c.take(Rule::reply_in).map(|p| self.expr_in(&mut Cursor::new(p)));
+                StmtKind::Reply { performative, content, reason, thread }
+            }
+            Rule::for_stmt => {
+                let (item, list) = (self.ident(&mut c), self.expr_in(&mut c));
+                StmtKind::For(item, list, self.block_in(&mut c))
+            }
             Rule::refine_stmt => StmtKind::Refine {
                 name: self.ident(&mut c),
                 first: self.expr_in(&mut c),

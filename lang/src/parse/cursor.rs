@@ -119,6 +119,11 @@ fn is_aside(rule: Rule) -> bool {
             | Rule::K_FROM
             | Rule::K_DEADLINE
             | Rule::K_WORST
+            | Rule::K_PROTOCOL
+            | Rule::K_CONVERSATION
+            | Rule::K_OPEN
+            | Rule::K_REPLY
+            | Rule::K_IN
             | Rule::K_HOST
             | Rule::K_TAKES
             | Rule::K_JITTER

@@ -60,6 +60,8 @@ impl Builder {
                 });
                 Item::Topic(Topic { name, ty, channel })
             }
+            Rule::protocol => Item::Protocol(self.protocol(p)),
+            Rule::conversation => Item::Conversation(self.conversation(p)),
             Rule::param => Item::Param(self.param(p)),
             Rule::test => Item::Test(self.test(p)),
             _ => return None,

@@ -2,6 +2,7 @@
 
 mod advice;
 mod behaviour;
+mod conversation;
 mod cursor;
 mod expr;
 mod items;

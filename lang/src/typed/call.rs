@@ -56,6 +56,7 @@ impl Checker<'_> {
             on.into_iter().map(Given::Typed).chain(args.iter().map(Given::Written)).collect();
         match &*f.name {
             "heard" => return self.heard(given, span),
+            "offering" => return self.offering(given, span),
             "achieved" => return self.achieved(given, span),
             "sqrt" | "dot" | "transpose" | "inverse" | "matrix" | "item" => {
                 return self.special(f, given, span);
@@ -82,7 +83,7 @@ impl Checker<'_> {
             .chain(self.decls.functions.keys().map(|k| k.to_string()))
             .chain(self.types.records.keys().map(|k| k.to_string()))
             .chain(lists::LIST_OPS.iter().map(|s| (*s).to_string()))
-            .chain(["heard", "sqrt", "dot", "transpose", "inverse", "matrix", "item"].map(String::from))
+            .chain(["heard", "offering", "sqrt", "dot", "transpose", "inverse", "matrix", "item"].map(String::from))
             .collect();
         let d = unknown(code::UNKNOWN_NAME, "function", &f.name, f.span, known.iter().map(String::as_str));
         self.report(d);

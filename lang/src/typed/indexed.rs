@@ -27,6 +27,12 @@ impl Named for Agent {
     }
 }
 
+impl Named for soifra_graph::Conversation {
+    fn name(&self) -> &Name {
+        &self.name
+    }
+}
+
 impl Named for Topic {
     fn name(&self) -> &Name {
         &self.channel.name

@@ -76,6 +76,8 @@ pub struct Body {
     pub in_machine: bool,
     /// Whether a robot is the subject (`each robot:`).
     pub of_robot: bool,
+    /// The conversation whose message, time-out or end releases the unit, with the local for it.
+    pub thread: Option<(u32, u32)>,
     /// Whether the body is that of a service with a budget, which has not refined anything yet.
     pub refines: bool,
 }
@@ -92,6 +94,7 @@ impl Body {
             data: Vec::new(),
             in_machine: false,
             of_robot: false,
+            thread: None,
             refines: false,
         }
     }
@@ -134,6 +137,8 @@ pub struct Checker<'a> {
     pub broken: BTreeSet<Name>,
     /// Topics: name and message type.
     pub topics: Indexed<Topic>,
+    /// Conversations.
+    pub conversations: Indexed<soifra_graph::Conversation>,
     /// Capacity of `heard` for each topic.
     pub topic_capacity: Vec<u32>,
     /// The agent whose body is being checked.

@@ -4,6 +4,9 @@ use super::{Checker, Place, arguments::Given};
 use crate::{ast::*, code, decls::unknown};
 use soifra_graph::{Diagnostic, Expr as GExpr, Op, Span, Type, Value, typing};
 
+/// The most agents that the directory names for a service.
+const OFFERERS: u32 = 64;
+
 impl Checker<'_> {
     pub(super) fn heard(&mut self, given: Vec<Given<'_>>, span: Span) -> Option<GExpr> {
         let topic = match given.as_slice() {
@@ -37,6 +40,47 @@ impl Checker<'_> {
         }
         let ty = Type::List(Box::new(self.topics[i].ty.clone()), self.topic_capacity[i]);
         Some(GExpr::new(Op::Heard(i as u32), Vec::new(), ty, span))
+    }
+
+    /// `offering(SERVICE)`: the agents that offer it.
+    pub(super) fn offering(&mut self, given: Vec<Given<'_>>, span: Span) -> Option<GExpr> {
+        let [Given::Written(Arg { name: None, lambda: None, value })] = given.as_slice() else {
+            self.report(
+                Diagnostic::error(code::ARGUMENTS, "`offering` takes a service")
+                    .at(span, "here")
+                    .hint("write `offering(SERVICE)`, with the name that agents offer"),
+            );
+            return None;
+        };
+        let name = match &*value.kind {
+            ExprKind::Name(n) => n.clone(),
+            _ => "?".into(),
+        };
+        let offers = |m: &AgentMember| matches!(m, AgentMember::Offers(n, _) if n.name == name);
+        if !self.decls.agents.iter().any(|a| a.members.iter().any(offers)) {
+            let names: Vec<String> = self
+                .decls
+                .agents
+                .iter()
+                .flat_map(|a| &a.members)
+                .filter_map(|m| if let AgentMember::Offers(n, _) = m { Some(n.name.to_string()) } else { None })
+                .collect();
+            let mut d =
+                unknown(code::NOBODY, "service", &name, value.span, names.iter().map(String::as_str));
+            d.title = format!("nobody offers `{name}`");
+            self.report(d);
+            return None;
+        }
+        if self.body.place != Place::Behaviour {
+            self.report(
+                Diagnostic::error(code::BELIEF, "only a behaviour asks the directory")
+                    .at(span, "nobody asks here")
+                    .hint("use it in a service, machine, plan or agent-level `let`"),
+            );
+            return None;
+        }
+        let ty = Type::List(Box::new(Type::Agent), OFFERERS);
+        Some(GExpr::new(Op::Offering(name), Vec::new(), ty, span))
     }
 
     pub(super) fn achieved(&mut self, given: Vec<Given<'_>>, span: Span) -> Option<GExpr> {

@@ -96,6 +96,13 @@ pub(crate) fn activate(
     {
         desk.frame[at..at + width].copy_from_slice(&letter.registers);
     }
+    if let (Some(at), Some(letter)) = (unit.envelope, &release.letter)
+        && let Some(envelope) = letter.envelope
+    {
+        for (register, x) in at.into_iter().zip(envelope) {
+            desk.frame[register] = x;
+        }
+    }
     if instant.trace {
         desk.before.clear();
         desk.before.extend_from_slice(mind.states);

@@ -438,6 +438,7 @@ impl Engine<'_> {
             regions: &self.regions,
             params: &self.params,
             texts: &self.texts,
+            directory: &self.directory,
             places: &self.places,
             now: self.now,
             seed: self.seed,

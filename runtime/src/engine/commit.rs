@@ -172,6 +172,14 @@ impl Engine<'_> {
                 let registers = log.get(&told.registers).to_vec();
                 self.tell(unit, told, registers, cause);
             }
+            Item::Open(o) => {
+                let (registers, to) = (log.get(&o.registers).to_vec(), log.get(&o.to).to_vec());
+                self.open_talk(unit, o.conversation, &o.performative, &registers, &to, o.within, cause);
+            }
+            Item::Reply(r) => {
+                let registers = log.get(&r.registers).to_vec();
+                self.reply_talk(unit, r.thread, &r.performative, r.reason.as_deref(), &registers, cause);
+            }
             Item::Raise(event) => {
                 let agent = &mission.agents[who.agent as usize];
                 for (u, code) in agent.units.iter().enumerate() {
@@ -295,7 +303,7 @@ impl Engine<'_> {
         let name = self.mission.topics[topic as usize].name.to_string();
         let (delay, capacity) = (board.channel.delay, board.channel.capacity);
         let letter =
-            Letter { topic: name, registers: registers.to_vec(), record: record.unwrap_or(0), capacity };
+            Letter { topic: name, registers: registers.to_vec(), record: record.unwrap_or(0), capacity, envelope: None };
         for u in lost {
             self.trace_delivery(u, &letter, Some("lost on the way"));
         }
@@ -337,7 +345,7 @@ impl Engine<'_> {
                 }
             }
         }
-        let letter = Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY };
+        let letter = Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
         if to.is_empty() {
             self.recorder.record(now, record, || Event::Delivery {
                 robot: who.robot,
@@ -421,6 +429,8 @@ fn put_off(item: &Item, from: &Log, to: &mut Log) {
             *registers = to.keep(from.get(registers));
         }
         Item::Tell(told) => told.registers = to.keep(from.get(&told.registers)),
+        Item::Open(o) => (o.registers, o.to) = (to.keep(from.get(&o.registers)), to.keep(from.get(&o.to))),
+        Item::Reply(r) => r.registers = to.keep(from.get(&r.registers)),
         _ => {}
     }
     to.items.push(item);

@@ -3,7 +3,8 @@
 use super::{
     board::{Board, Near},
     cast::{Cast, Instance},
-    log::{Item, Log, Told},
+    directory::Directory,
+    log::{Item, Log, Opened, Replied, Told},
     regions::Regions,
     senses::Senses,
 };
@@ -28,6 +29,7 @@ pub(crate) struct Instant<'a> {
     pub regions: &'a Regions,
     pub params: &'a [f64],
     pub texts: &'a soifra_graph::Texts,
+    pub directory: &'a Directory,
     /// True positions of the robots, for the radio.
     pub places: &'a [[f64; 3]],
     pub now: Time,
@@ -106,6 +108,18 @@ impl Env for AgentEnv<'_, '_> {
         Ok(())
     }
 
+    fn offering(&mut self, service: &str, out: &mut [f64]) -> Result<(), FaultKind> {
+        let (count, items) = out.split_first_mut().ok_or(FaultKind::Malformed)?;
+        items.fill(0.0);
+        let mut found = 0;
+        for (slot, agent) in items.iter_mut().zip(self.instant.directory.search(service)) {
+            *slot = f64::from(agent);
+            found += 1;
+        }
+        *count = f64::from(found);
+        Ok(())
+    }
+
     fn robot(&self) -> Option<u32> {
         Some(self.who.robot)
     }
@@ -139,6 +153,17 @@ impl Env for AgentEnv<'_, '_> {
                 let (performative, to, content) = (performative.into(), to.into(), content.clone());
                 let registers = log.keep(registers);
                 log.items.push(Item::Tell(Box::new(Told { performative, to, content, registers })));
+            }
+            Effect::Open { conversation, performative, registers, to, within } => {
+                let (registers, to) = (log.keep(registers), log.keep(to));
+                let performative = performative.into();
+                let opened = Opened { conversation, performative, registers, to, within };
+                log.items.push(Item::Open(Box::new(opened)));
+            }
+            Effect::Reply { performative, reason, registers, thread, .. } => {
+                let registers = log.keep(registers);
+                let (performative, reason) = (performative.into(), reason.map(str::to_string));
+                log.items.push(Item::Reply(Box::new(Replied { performative, reason, registers, thread })));
             }
             Effect::Raise(event) => log.items.push(Item::Raise(event)),
             Effect::SetParam { param, registers } => {

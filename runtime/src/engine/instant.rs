@@ -5,12 +5,12 @@ use super::{
     activate::Release,
     env::Instant,
     judge::{Court, Occasion},
-    post::Delivered,
+    post::{Delivered, Letter},
     queue::Scheduled,
     report::{INTERRUPTED, RunReport},
 };
 use crate::{Event, Report, Time};
-use std::sync::atomic::Ordering;
+use std::sync::{Arc, atomic::Ordering};
 
 /// The fewest activations at one instant that are too many.
 const TOO_MANY: usize = 1_000_000;
@@ -83,6 +83,7 @@ impl Engine<'_> {
         self.poll();
         self.arrive();
         self.activate_all();
+        self.forget_talks();
         self.decide();
         self.judge_instant()
     }
@@ -195,13 +196,12 @@ impl Engine<'_> {
                 Scheduled::Deliver { letter, to } => {
                     for unit in to {
                         let record = self.trace_delivery(unit, &letter, None);
-                        let delivered = Delivered { letter: letter.clone(), record };
-                        if let Some(oldest) = self.mail.put(unit, delivered) {
-                            self.trace_delivery(unit, &oldest.letter, Some("the mailbox is full"));
-                        }
+                        self.put_letter(unit, letter.clone(), record);
                         mailboxes.push(unit);
                     }
                 }
+                Scheduled::Utter(u) => self.hear(u),
+                Scheduled::Patience { branch, by, entry } => self.patience(branch, by, entry),
                 Scheduled::Late { unit, release } => self.admit_since(unit, release, None),
                 Scheduled::Core { core, version } => self.core_due(core, version),
                 Scheduled::Deadline { unit, release } => self.deadline_due(unit, release),
@@ -235,8 +235,15 @@ impl Engine<'_> {
         }
     }
 
+    /// Puts a letter into a mailbox, whose oldest is lost when it is full.
+    pub(super) fn put_letter(&mut self, unit: u32, letter: Arc<Letter>, record: Option<u64>) {
+        if let Some(oldest) = self.mail.put(unit, Delivered { letter, record }) {
+            self.trace_delivery(unit, &oldest.letter, Some("the mailbox is full"));
+        }
+    }
+
     /// Releases a unit for as many of its letters as it may handle now.
-    fn open_mailbox(&mut self, unit: u32) {
+    pub(super) fn open_mailbox(&mut self, unit: u32) {
         while self.mail.waits(unit) {
             if let Some(free) = self.blocked(unit) {
                 self.wake(unit, free);
@@ -401,6 +408,7 @@ impl Engine<'_> {
                 regions: &self.regions,
                 params: &self.params,
                 texts: &self.texts,
+                directory: &self.directory,
                 places: &self.places,
                 now: self.now,
                 seed: self.seed,

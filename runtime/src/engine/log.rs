@@ -18,6 +18,8 @@ pub(crate) enum Item {
     },
     Tell(Box<Told>),
     Raise(u32),
+    Open(Box<Opened>),
+    Reply(Box<Replied>),
     SetParam {
         param: u32,
         registers: Range<u32>,
@@ -56,6 +58,25 @@ pub(crate) struct Told {
     pub to: Name,
     pub content: Name,
     pub registers: Range<u32>,
+}
+
+/// A conversation to be opened.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Opened {
+    pub conversation: u32,
+    pub performative: Name,
+    pub registers: Range<u32>,
+    pub to: Range<u32>,
+    pub within: Option<f64>,
+}
+
+/// Something to be said in a conversation.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Replied {
+    pub performative: Name,
+    pub reason: Option<String>,
+    pub registers: Range<u32>,
+    pub thread: f64,
 }
 
 /// The items of consecutive activations.
@@ -116,6 +137,8 @@ impl Item {
                 | Item::Publish { .. }
                 | Item::Tell(_)
                 | Item::Raise(_)
+                | Item::Open(_)
+                | Item::Reply(_)
                 | Item::SetParam { .. }
         )
     }

@@ -15,6 +15,7 @@ mod cast;
 mod commit;
 mod contacts;
 mod cores;
+mod directory;
 mod env;
 mod finish;
 mod goals;
@@ -31,6 +32,7 @@ pub mod report;
 mod senses;
 mod setup;
 pub(crate) mod snapshot;
+mod talks;
 mod verdict;
 mod work;
 
@@ -43,6 +45,7 @@ use cast::Cast;
 pub use cast::DEFAULT_LIFETIME;
 use contacts::Contacts;
 use cores::{CoreState, Tally};
+use directory::Directory;
 use goals::Goals;
 use judge::Judge;
 use minds::Minds;
@@ -55,6 +58,7 @@ use senses::Senses;
 use serde::{Deserialize, Serialize};
 pub use snapshot::Snapshot;
 use soifra_graph::Texts;
+use talks::Talks;
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
 /// One run of a mission.
@@ -94,6 +98,12 @@ pub struct Engine<'m> {
     senses: Senses,
     boards: Vec<Board>,
     mail: Mail,
+    talks: Talks,
+    /// Conversations that may be over.
+    ended: Vec<u64>,
+    /// Of each declared conversation.
+    channels: Vec<TalkChannel>,
+    directory: Directory,
     queue: Queue,
     actuators: Actuators,
     contacts: Contacts,
@@ -116,6 +126,16 @@ pub struct Engine<'m> {
     desk: Desk,
     /// Activations and polls of the current instant.
     events: usize,
+}
+
+/// How the messages of a conversation travel.
+#[derive(Debug, Clone)]
+struct TalkChannel {
+    delay: Time,
+    loss: f64,
+    capacity: usize,
+    /// How long a side waits in each state.
+    timeouts: Vec<Option<Time>>,
 }
 
 /// When a unit may be released again.

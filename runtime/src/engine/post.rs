@@ -16,6 +16,8 @@ pub(crate) struct Letter {
     pub record: u64,
     /// Most letters that may wait in a mailbox.
     pub capacity: usize,
+    /// Who is talking, and in which conversation.
+    pub envelope: Option<[f64; 2]>,
 }
 
 /// A letter in a mailbox, with the record of its delivery.

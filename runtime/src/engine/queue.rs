@@ -4,9 +4,11 @@ use super::{
     cast::Timer,
     log::{Item, Log},
     post::Letter,
+    talks::Utterance,
 };
 use crate::Time;
 use serde::{Deserialize, Serialize};
+use soifra_graph::Role;
 use std::{
     cmp::Reverse,
     collections::{BTreeMap, BinaryHeap},
@@ -20,6 +22,10 @@ pub(crate) enum Scheduled {
     Deliver { letter: Arc<Letter>, to: Vec<u32> },
     /// Outputs of an activation that took its time.
     Outputs { unit: u32, record: Option<u64>, log: Log },
+    /// A message of a conversation arrives.
+    Utter(Utterance),
+    /// A side of a conversation has waited long enough.
+    Patience { branch: u64, by: Role, entry: u32 },
     /// A unit that was kept waiting may be released.
     Wake(u32),
     /// A periodic unit is released, later than its period says.
@@ -74,6 +80,7 @@ impl Queue {
                         Scheduled::Wake(unit)
                         | Scheduled::Late { unit, .. }
                         | Scheduled::Deadline { unit, .. } => known(unit),
+                        Scheduled::Utter(_) | Scheduled::Patience { .. } => true,
                         Scheduled::Core { core, .. } => (*core as usize) < cores,
                     }
             });

@@ -1,7 +1,7 @@
 //! Prepares a run.
 
 use super::{
-    Clock, Engine,
+    Clock, Engine, TalkChannel,
     activate::Desk,
     actuate::Actuators,
     batch::Workers,
@@ -9,6 +9,7 @@ use super::{
     cast::Cast,
     contacts::Contacts,
     cores::{CoreState, Tally},
+    directory::Directory,
     goals::Goals,
     judge::{Judge, Watch},
     minds::Minds,
@@ -17,6 +18,7 @@ use super::{
     recorder::Recorder,
     regions::Regions,
     senses::Senses,
+    talks::Talks,
     verdict::Track,
 };
 use crate::{
@@ -72,6 +74,7 @@ impl<'m> Engine<'m> {
         let judge = judge(mission, scene, &mut start, truth)?;
         let goals = Goals::new(mission, scene, &cast);
         let (subscribers, on_reading) = receivers(mission, scene, &cast);
+        let channels = talk_channels(mission, &mut start)?;
         let minds = Minds::new(&cast);
         let frame = mission.frame.max(1);
         Ok(Engine {
@@ -100,6 +103,10 @@ impl<'m> Engine<'m> {
             senses: Senses::new(scene, &mission.graph.types),
             boards,
             mail: Mail::default(),
+            talks: Talks::default(),
+            ended: Vec::new(),
+            channels,
+            directory: Directory::new(mission, &cast),
             queue,
             actuators,
             contacts: Contacts::new(scene.robots.len()),
@@ -217,6 +224,31 @@ fn boards(
         boards.push(Board::new(start.seed, t as u32, channel, senders, period, truth));
     }
     Ok(boards)
+}
+
+fn talk_channels(mission: &Mission, start: &mut Start<'_>) -> Result<Vec<TalkChannel>, Diagnostic> {
+    let mut out = Vec::new();
+    for (code, c) in mission.talks.iter().zip(&mission.graph.conversations) {
+        let delay = seconds(start, code.delay.as_ref())?.unwrap_or_default().max(LEAST_DELAY);
+        let mut number = |block: Option<&Block>, default: f64| -> Result<f64, Diagnostic> {
+            match block {
+                Some(b) => Ok(start.run(b, &[])?.first().copied().unwrap_or(default)),
+                None => Ok(default),
+            }
+        };
+        let (loss, capacity) = (number(code.loss.as_ref(), 0.0)?, number(code.capacity.as_ref(), 64.0)?);
+        if !(0.0..=1.0).contains(&loss) || !(1.0..=MOST_CAPACITY).contains(&capacity) {
+            let text =
+                format!("conversation `{}` cannot have a loss of {loss} and a capacity of {capacity}", c.name);
+            return Err(Diagnostic::error(START_VALUE, text).at(c.at, "here"));
+        }
+        let mut timeouts = Vec::new();
+        for t in &code.timeouts {
+            timeouts.push(seconds(start, t.as_ref())?);
+        }
+        out.push(TalkChannel { delay, loss, capacity: capacity as usize, timeouts });
+    }
+    Ok(out)
 }
 
 fn judge(mission: &Mission, scene: &Scene, start: &mut Start<'_>, truth: bool) -> Result<Judge, Diagnostic> {

@@ -7,11 +7,13 @@ use super::{
     board::Kept,
     contacts::Contacts,
     cores::{CoreState, Tally},
+    directory::Directory,
     goals::Goals,
     minds::Minds,
     post::Mail,
     queue::Agenda,
     senses::Senses,
+    talks::Talks,
     verdict::Track,
 };
 use crate::Time;
@@ -34,6 +36,8 @@ pub struct Snapshot {
     senses: Senses,
     boards: Vec<Kept>,
     mail: Mail,
+    talks: Talks,
+    directory: Directory,
     agenda: Agenda,
     actuators: Actuators,
     contacts: Contacts,
@@ -78,6 +82,8 @@ impl Engine<'_> {
                 senses: self.senses.clone(),
                 boards: self.boards.iter().map(|b| b.kept()).collect(),
                 mail: self.mail.clone(),
+                talks: self.talks.clone(),
+                directory: self.directory.clone(),
                 agenda: self.queue.agenda(),
                 actuators: self.actuators.clone(),
                 contacts: self.contacts.clone(),
@@ -96,6 +102,7 @@ impl Engine<'_> {
         let counts = |tracks: &[Vec<Track>]| tracks.iter().map(Vec::len).collect::<Vec<_>>();
         let tracks: Vec<_> = self.judge.watches.iter().map(|w| w.tracks.clone()).collect();
         let units = self.cast.units.len();
+        let states: Vec<usize> = self.mission.graph.conversations.iter().map(|c| c.states.len()).collect();
         let fits = s.params.len() == self.params.len()
             && s.minds.fits(&self.minds, self.mission, &self.cast)
             && s.subgoals.len() == self.subgoals.len()
@@ -106,6 +113,8 @@ impl Engine<'_> {
             && s.senses.fits(&self.senses)
             && s.boards.len() == self.boards.len()
             && s.mail.fits(units)
+            && s.talks.fits(self.cast.instances.len(), &states)
+            && s.directory.fits(self.cast.instances.len())
             && s.actuators.fits(&self.actuators)
             && s.contacts.fits(&self.contacts)
             && s.goals.fits(&self.goals)
@@ -120,6 +129,7 @@ impl Engine<'_> {
         (self.now, self.polled) = (s.t, s.polled);
         (self.params, self.minds, self.subgoals, self.clocks) = (s.params, s.minds, s.subgoals, s.clocks);
         (self.tallies, self.cores) = (s.tallies, s.cores);
+        (self.talks, self.directory) = (s.talks, s.directory);
         (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);
         (self.poses, self.movers) = (s.poses, s.movers.into_iter().collect());

@@ -46,6 +46,8 @@ pub(crate) struct UnitCode {
     pub locals: usize,
     /// Where the message that triggered it goes: register and width.
     pub letter: Option<(usize, usize)>,
+    /// Where the other agent and the conversation go.
+    pub envelope: Option<[usize; 2]>,
     /// Sensor ports it reads.
     pub reads: Vec<u32>,
     /// Those of them whose reading must be present.
@@ -61,8 +63,27 @@ pub(crate) enum TriggerCode {
     Step { offset: Option<Block> },
     Message { topic: u32 },
     Told { performative: Name, content: Name, from: Option<Name> },
+    Talk { conversation: u32, what: TalkCode },
     Reading(u32),
     Event(u32),
+}
+
+/// What of a conversation sets a unit off.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum TalkCode {
+    /// A message with this performative.
+    Message(Name),
+    Timeout,
+    Settled,
+}
+
+/// How the messages of a conversation travel, and how long its sides wait; evaluated at the start of a run.
+pub(crate) struct TalkChannelCode {
+    pub delay: Option<Block>,
+    pub loss: Option<Block>,
+    pub capacity: Option<Block>,
+    /// Of each state.
+    pub timeouts: Vec<Option<Block>>,
 }
 
 /// Durations, evaluated at the start of a run.

@@ -3,7 +3,7 @@
 use super::{code::*, uses::Uses};
 use crate::nodes::{Act, Kind, MAX_DEPTH, Part, Tree};
 use soifra_graph::{
-    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy, Timing,
+    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy, Talk, Timing,
     Trigger, Type, Unit, UnitKind,
     eval::{Block, CompileError, Compiler, Layout, Scope},
 };
@@ -154,6 +154,13 @@ fn unit(
         }
     }
     let (trigger, letter) = trigger(c, graph, agent, unit, &scope)?;
+    let envelope = match &unit.trigger {
+        Trigger::Talk { sender, thread, .. } => match (scope.local(*sender), scope.local(*thread)) {
+            (Some(a), Some(b)) => Some([a as usize, b as usize]),
+            _ => return damaged(unit.span, "there is no place for who is talking"),
+        },
+        _ => None,
+    };
     let timing = timing(c, &unit.timing)?;
     let kind = match &unit.kind {
         UnitKind::Service(body) if body.iter().any(|s| matches!(s.kind, StmtKind::Refine(_))) => {
@@ -214,6 +221,7 @@ fn unit(
         timing,
         locals,
         letter,
+        envelope,
         reads: uses.readings,
         requires,
         hears: uses.heard,
@@ -257,6 +265,26 @@ fn trigger(
             let (performative, from) = (performative.clone(), from.clone());
             let letter = letter(*local, &Type::Record(content.clone()))?;
             (TriggerCode::Told { performative, content: content.clone(), from }, letter)
+        }
+        Trigger::Talk { conversation, what, .. } => {
+            let Some(of) = graph.conversations.get(*conversation as usize) else {
+                return damaged(unit.span, "a conversation does not exist");
+            };
+            let conversation = *conversation;
+            match what {
+                Talk::Timeout => (TriggerCode::Talk { conversation, what: TalkCode::Timeout }, None),
+                Talk::Settled => (TriggerCode::Talk { conversation, what: TalkCode::Settled }, None),
+                Talk::Message { performative, content } => {
+                    let mut moves = of.states.iter().flat_map(|s| &s.moves);
+                    let carried = moves.find(|m| m.performative == *performative).and_then(|m| m.content.clone());
+                    let letter = match (content, carried) {
+                        (Some(local), Some(record)) => letter(*local, &Type::Record(record))?,
+                        (None, _) => None,
+                        _ => return damaged(unit.span, "a message that carries nothing is named"),
+                    };
+                    (TriggerCode::Talk { conversation, what: TalkCode::Message(performative.clone()) }, letter)
+                }
+            }
         }
         Trigger::Reading(p) if (*p as usize) < agent.sensors.len() => (TriggerCode::Reading(*p), None),
         Trigger::Event(e) if (*e as usize) < agent.events.len() => (TriggerCode::Event(*e), None),

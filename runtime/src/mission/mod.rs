@@ -10,7 +10,7 @@ pub(crate) mod start;
 pub(crate) mod uses;
 
 use crate::Scene;
-use code::{AgentCode, GroupCode, JudgeCode, SceneCode, TopicCode};
+use code::{AgentCode, GroupCode, JudgeCode, SceneCode, TalkChannelCode, TopicCode};
 use compile::Compiled;
 pub use scene::MAX_INSTANCES;
 use soifra_graph::{
@@ -49,6 +49,7 @@ pub struct Mission {
     pub(crate) agents: Vec<AgentCode>,
     pub(crate) groups: Vec<GroupCode>,
     pub(crate) topics: Vec<TopicCode>,
+    pub(crate) talks: Vec<TalkChannelCode>,
     pub(crate) judge: JudgeCode,
     pub(crate) scene: SceneCode,
 }
@@ -65,10 +66,10 @@ impl Mission {
         let parts = compile(&mut compiler, &graph, &mut errors);
         let program = compiler.finish();
         match parts {
-            Some((agents, groups, topics, judge, scene)) if errors.is_empty() => {
+            Some((agents, groups, topics, talks, judge, scene)) if errors.is_empty() => {
                 let params = Layout::params(&graph);
                 let frame = agents.iter().map(|a| a.frame).max().unwrap_or(0);
-                Ok(Mission { graph, texts, program, params, frame, agents, groups, topics, judge, scene })
+                Ok(Mission { graph, texts, program, params, frame, agents, groups, topics, talks, judge, scene })
             }
             _ => Err(errors.into_iter().map(diagnostic).collect()),
         }
@@ -103,7 +104,8 @@ impl Mission {
     }
 }
 
-type Parts = (Vec<AgentCode>, Vec<GroupCode>, Vec<TopicCode>, JudgeCode, SceneCode);
+type Parts =
+    (Vec<AgentCode>, Vec<GroupCode>, Vec<TopicCode>, Vec<TalkChannelCode>, JudgeCode, SceneCode);
 
 fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) -> Option<Parts> {
     fn keep<T>(result: Compiled<T>, errors: &mut Vec<CompileError>) -> Option<T> {
@@ -118,6 +120,7 @@ fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) 
         (0..graph.agents.len() as u32).map(|a| compile::agent(c, graph, a, errors)).collect::<Vec<_>>();
     let groups = graph.robots.iter().map(|r| keep(group::group(c, graph, r), errors)).collect::<Vec<_>>();
     let topics = graph.topics.iter().map(|t| keep(topic(c, graph, t), errors)).collect::<Vec<_>>();
+    let talks = graph.conversations.iter().map(|t| keep(talk(c, t), errors)).collect::<Vec<_>>();
     let judge = keep(judge::judge(c, graph), errors);
     let scene = keep(scene::compile(c, graph), errors);
     for s in graph.goals.iter().flat_map(|g| &g.subgoals) {
@@ -131,7 +134,26 @@ fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) 
     let (agents, groups): (Option<Vec<_>>, Option<Vec<_>>) =
         (agents.into_iter().collect(), groups.into_iter().collect());
     let topics: Option<Vec<_>> = topics.into_iter().collect();
-    Some((agents?, groups?, topics?, judge?, scene?))
+    let talks: Option<Vec<_>> = talks.into_iter().collect();
+    Some((agents?, groups?, topics?, talks?, judge?, scene?))
+}
+
+fn talk(c: &mut Compiler<'_>, t: &soifra_graph::Conversation) -> Compiled<TalkChannelCode> {
+    let states = t.states.len();
+    for s in &t.states {
+        let targets = s.moves.iter().map(|m| m.target).chain(s.timeout.as_ref().map(|t| t.1));
+        if targets.into_iter().any(|t| t as usize >= states) {
+            return compile::damaged(s.at, "a protocol leads to a state that does not exist");
+        }
+    }
+    let mut arg = |name: &str| {
+        let e = t.channel.args.iter().find(|(n, _)| **n == *name).map(|(_, e)| e);
+        e.map(|e| compile::alone(c, e, &[])).transpose()
+    };
+    let (delay, loss, capacity) = (arg("delay")?, arg("loss")?, arg("capacity")?);
+    let timeout = |s: &soifra_graph::ProtocolState| compile::perhaps(c, s.timeout.as_ref().map(|t| &t.0));
+    let timeouts = t.states.iter().map(timeout).collect::<Compiled<_>>()?;
+    Ok(TalkChannelCode { delay, loss, capacity, timeouts })
 }
 
 fn topic(c: &mut Compiler<'_>, graph: &Graph, t: &soifra_graph::Topic) -> Compiled<TopicCode> {

@@ -65,6 +65,12 @@ impl Uses {
                     add(&mut self.publishes, *topic);
                     self.expr(e);
                 }
+                StmtKind::Open(o) => self.exprs(o.content.iter().chain([&o.to]).chain(&o.within)),
+                StmtKind::Reply(r) => self.exprs(r.content.iter().chain([&r.thread])),
+                StmtKind::Each(each) => {
+                    self.expr(&each.list);
+                    self.stmts(&each.body);
+                }
                 StmtKind::Refine(r) => {
                     self.exprs([&r.first, &r.step].into_iter().chain(&r.until));
                 }

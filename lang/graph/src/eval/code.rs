@@ -143,6 +143,8 @@ pub(super) enum Instr {
     RunFact { which: Run, d: u32 },
     /// `state` indexes [`Program::believed`].
     Believed { d: u32, state: u32 },
+    /// `service` indexes [`Program::services`].
+    Offering { d: u32, service: u32, n: u32 },
     /// `unit` indexes [`Program::executed`].
     Executed { d: u32, unit: u32 },
     Achieved { d: u32, goal: u32 },
@@ -228,10 +230,22 @@ pub(super) struct ListRef {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum EffectCode {
     Tell { performative: Name, to: Name, content: Name, n: u32 },
+    /// Registers: content, then the agents, then the time to wait.
+    Open { conversation: u32, performative: Name, n: u32, to: Recipients, within: bool },
+    /// Registers: content, then the conversation.
+    Reply { conversation: u32, performative: Name, reason: Option<String>, n: u32 },
     Note { text: String, value: Option<(Type, u32)> },
     Raise(u32),
     SetParam { param: u32, n: u32 },
     Rule { rule: u32, at: Span },
+}
+
+/// Whom a conversation is opened with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Recipients {
+    One,
+    /// A list of this capacity.
+    List(u32),
 }
 
 /// Where a type has registers that a value may leave unused.
@@ -279,6 +293,8 @@ pub struct Program {
     pub(super) believed: Vec<(u32, u32, u32)>,
     /// Agent, unit, what is asked.
     pub(super) executed: Vec<(u32, u32, Execution)>,
+    /// Names that the directory is asked for.
+    pub(super) services: Vec<Name>,
 }
 
 impl Shape {

@@ -94,6 +94,7 @@ pub fn constant(e: &Expr, known: &Known<'_>, texts: &mut Texts) -> Result<Value,
 /// Why an operator has no value known beforehand.
 fn not_constant(op: &Op, known: &Known<'_>) -> Option<&'static str> {
     match op {
+        Op::Offering(_) => Some("the directory"),
         Op::Executed(..) => Some("the executions of a unit"),
         Op::State(_) | Op::Believed(..) => Some("the state of an agent"),
         Op::Argument(_) => Some("an argument of an agent"),

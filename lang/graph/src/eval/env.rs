@@ -63,6 +63,10 @@ pub trait Env {
     fn robot_of_group(&self, _group: u32) -> Option<u32> {
         None
     }
+    /// The agents that offer a service: count, then numbers.
+    fn offering(&mut self, _service: &str, _out: &mut [f64]) -> Result<(), FaultKind> {
+        Err(FaultKind::Unavailable("the directory"))
+    }
     /// The robot in question: of which `own`, `truth` and `believed` speak.
     fn robot(&self) -> Option<u32> {
         None
@@ -104,6 +108,32 @@ pub enum Effect<'a> {
         content: &'a Name,
         /// The content.
         registers: &'a [f64],
+    },
+    /// A conversation is opened.
+    Open {
+        /// Conversation.
+        conversation: u32,
+        /// Performative, lower case.
+        performative: &'a str,
+        /// The content.
+        registers: &'a [f64],
+        /// Numbers of the agents it is opened with.
+        to: &'a [f64],
+        /// How long to wait, in seconds, when that is said.
+        within: Option<f64>,
+    },
+    /// Something is said in a conversation.
+    Reply {
+        /// Conversation.
+        conversation: u32,
+        /// Performative, lower case.
+        performative: &'a str,
+        /// Why.
+        reason: Option<&'a str>,
+        /// The content.
+        registers: &'a [f64],
+        /// Which one.
+        thread: f64,
     },
     /// A remark for the trace.
     Note {

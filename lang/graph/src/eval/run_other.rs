@@ -1,6 +1,6 @@
 //! The instructions that are rare, or do so much that a call more does not matter.
 
-use super::code::{EffectCode, Instr, Program};
+use super::code::{EffectCode, Instr, Program, Recipients};
 use super::run::{MAX_INT, Machine, array};
 use super::{Effect, FaultKind, MAX_ROBOTS, builtins, geometry as g, lists};
 use crate::Distribution;
@@ -218,6 +218,9 @@ impl Program {
                 let robot = m.robot()?;
                 m.env.believed(robot, agent, state, out(frame, d, n)?)
             }
+            Instr::Offering { d, service, n } => {
+                m.env.offering(some(self.services.get(service as usize))?, out(frame, d, n)?)
+            }
             Instr::Executed { d, unit } => {
                 let (agent, unit, which) = *some(self.executed.get(unit as usize))?;
                 let robot = m.robot()?;
@@ -297,6 +300,34 @@ impl Program {
             EffectCode::Tell { performative, to, content, n } => {
                 Effect::Tell { performative, to, content, registers: value(*n)? }
             }
+            EffectCode::Open { conversation, performative, n, to, within } => {
+                let (from, capacity) = match to {
+                    Recipients::One => (*n, 0),
+                    Recipients::List(c) => (*n, *c),
+                };
+                let (agents, end) = match to {
+                    Recipients::One => (finite_part(r, from, 1)?, from + 1),
+                    Recipients::List(_) => {
+                        let count = (get(r, from)? as u32).min(capacity);
+                        (finite_part(r, from + 1, count)?, from + 1 + capacity)
+                    }
+                };
+                let within = if *within { Some(get(r, end)?) } else { None };
+                Effect::Open {
+                    conversation: *conversation,
+                    performative,
+                    registers: value(*n)?,
+                    to: agents,
+                    within,
+                }
+            }
+            EffectCode::Reply { conversation, performative, reason, n } => Effect::Reply {
+                conversation: *conversation,
+                performative,
+                reason: reason.as_deref(),
+                registers: value(*n)?,
+                thread: get(r, *n)?,
+            },
             EffectCode::Note { text, value: None } => Effect::Note { text, value: None },
             EffectCode::Note { text, value: Some((ty, n)) } => {
                 Effect::Note { text, value: Some((ty, value(*n)?)) }

@@ -125,6 +125,8 @@ pub(super) fn same_layout(a: &Type, b: &Type) -> bool {
                 | Type::Heading(_)
                 | Type::Enum(_)
                 | Type::Handle(_)
+                | Type::Agent
+                | Type::Conversation(_)
         )
     };
     let vector = |t: &Type| matches!(t, Type::Point(_) | Type::Vector(..));

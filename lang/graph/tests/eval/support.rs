@@ -207,6 +207,12 @@ impl Env for World {
             Effect::Note { text, value } => {
                 Done::Note(text.into(), value.map(|(t, r)| (t.clone(), r.to_vec())))
             }
+            Effect::Open { conversation, performative, registers, to, within } => {
+                format!("open {conversation} {performative} {registers:?} to {to:?} within {within:?}")
+            }
+            Effect::Reply { conversation, performative, reason, registers, thread } => {
+                format!("reply {conversation} {performative} {reason:?} {registers:?} in {thread}")
+            }
             Effect::Raise(event) => Done::Raise(event),
             Effect::SetParam { param, registers } => Done::SetParam(param, registers.to_vec()),
             Effect::RuleFired { rule, .. } => Done::Rule(rule),
@@ -328,6 +334,7 @@ pub fn graph() -> Graph {
         world: vec![],
         platforms: vec![],
         topics: vec![Topic { ty: beacon(), channel: component("topic", "plan") }],
+        conversations: vec![],
         agents: vec![agent],
         robots: vec![group("r1"), group("r2")],
         step: None,

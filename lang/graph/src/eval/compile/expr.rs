@@ -151,6 +151,7 @@ impl Compiler<'_> {
             | Op::Run(_)
             | Op::Believed(..)
             | Op::Executed(..)
+            | Op::Offering(_)
             | Op::Achieved(_) => self.gen_question(e, dest),
             Op::Quantified(q) => self.gen_quantified(e, *q, dest),
             Op::OfRobot(group) => self.gen_of_robot(e, *group, dest),

@@ -5,7 +5,7 @@ use super::expr::{arguments, gives, writes_last};
 use super::{Compiled, Compiler, Place};
 use crate::eval::code::{Instr, ListRef, Space};
 use crate::eval::widths::same_layout;
-use crate::{Expr, Function, ListOp, Span, Type, reason};
+use crate::{Expr, Function, ListOp, Span, Stmt, Type, reason};
 
 impl Compiler<'_> {
     /// Code for a list, and a description of it for an instruction.
@@ -72,6 +72,44 @@ impl Compiler<'_> {
         self.land(&next);
         self.emit(go_on(first), at);
         self.repeat(before, u64::from(list.capacity));
+        Ok(())
+    }
+
+    /// Code of statements for each item. They may change the state that the list comes from, so it is copied.
+    pub(super) fn gen_each(&mut self, e: &Expr, local: u32, body: &[Stmt]) -> Compiled<()> {
+        let (Type::List(of, capacity), (item, t)) = (&e.ty, self.local(local, e.span)?) else {
+            return error(e.span, format!("a list is wanted here, not {}", e.ty));
+        };
+        if *capacity > 0 && !same_layout(of, &t) {
+            return error(e.span, format!("the items of {} are put into {t}", e.ty));
+        }
+        let n = self.width(&e.ty, e.span)?;
+        let copy = self.alloc(n, e.span)?;
+        let place = self.generate(e, None)?;
+        if place != Place::frame(copy) {
+            self.copy(place, copy, n, e.span);
+        }
+        let width = if *capacity == 0 { 0 } else { self.width(of, e.span)? };
+        let list = ListRef {
+            space: Space::Frame,
+            at: copy,
+            capacity: *capacity,
+            width,
+            state: self.alloc(3, e.span)?,
+            item,
+            part: (0, width),
+            out_width: 0,
+            out_capacity: 0,
+        };
+        let index = self.add_list(list);
+        let (go_in, go_on) = loop_instructions(&list, index);
+        let mut out = Vec::new();
+        self.jump(go_in, &mut out, e.span);
+        let (first, before) = (self.here(), self.body.cost);
+        self.perhaps(|c| c.with_bound(local, None, |c| c.gen_stmts(body)))?;
+        self.emit(go_on(first), e.span);
+        self.repeat(before, u64::from(*capacity));
+        self.land(&out);
         Ok(())
     }
 

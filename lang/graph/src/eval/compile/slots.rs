@@ -215,6 +215,10 @@ impl Compiler<'_> {
                     None => return error(e.span, "there is no such agent or state"),
                 }
             }
+            Op::Offering(_) => match &e.ty {
+                Type::List(item, _) if **item == Type::Agent => e.ty.clone(),
+                _ => return error(e.span, "the directory gives a list of agents"),
+            },
             Op::Achieved(goal) if goal as usize >= self.goals.len() => {
                 return error(e.span, format!("there is no goal {goal}"));
             }
@@ -231,6 +235,10 @@ impl Compiler<'_> {
             Op::Truth(which) => Instr::Truth { which, d, n },
             Op::Run(which @ (Run::Collisions | Run::InCollision)) => Instr::RunFact { which, d },
             Op::Achieved(goal) => Instr::Achieved { d, goal },
+            Op::Offering(ref service) => {
+                self.program.services.push(service.clone());
+                Instr::Offering { d, service: (self.program.services.len() - 1) as u32, n }
+            }
             Op::Executed(agent, unit, which) => {
                 self.program.executed.push((agent, unit, which));
                 Instr::Executed { d, unit: (self.program.executed.len() - 1) as u32 }

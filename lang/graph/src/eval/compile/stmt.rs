@@ -3,8 +3,9 @@
 use super::emit::error;
 use super::expr::gives;
 use super::{Compiled, Compiler, MAX_DEPTH};
-use crate::eval::code::{EffectCode, Instr};
-use crate::{Conjunct, Expr, Rule, Span, Stmt, StmtKind, Type};
+use super::Place;
+use crate::eval::code::{EffectCode, Instr, Recipients};
+use crate::{Conjunct, Expr, Open, Reply, Rule, Span, Stmt, StmtKind, Type};
 
 /// Every expression of some statements.
 pub(super) fn walk<'s>(stmts: &'s [Stmt], visit: &mut dyn FnMut(&'s Expr)) {
@@ -17,6 +18,14 @@ pub(super) fn walk<'s>(stmts: &'s [Stmt], visit: &mut dyn FnMut(&'s Expr)) {
             | StmtKind::Tell { content: e, .. }
             | StmtKind::Note(_, Some(e))
             | StmtKind::SetParam(_, e) => e.walk(visit),
+            StmtKind::Open(o) => {
+                o.content.iter().chain([&o.to]).chain(&o.within).for_each(|e| e.walk(visit));
+            }
+            StmtKind::Reply(r) => r.content.iter().chain([&r.thread]).for_each(|e| e.walk(visit)),
+            StmtKind::Each(each) => {
+                each.list.walk(visit);
+                walk(&each.body, visit);
+            }
             StmtKind::Refine(r) => {
                 r.first.walk(visit);
                 r.step.walk(visit);
@@ -82,7 +91,10 @@ impl Compiler<'_> {
             // Whoever runs a service takes its rounds apart.
             StmtKind::Refine(_) => return error(s.at, "nothing can be refined here"),
             StmtKind::Rules(rules) => self.perhaps(|c| c.gen_rules(rules))?,
+            StmtKind::Each(each) => self.gen_each(&each.list, each.local, &each.body)?,
             StmtKind::Set(..)
+            | StmtKind::Open(_)
+            | StmtKind::Reply(_)
             | StmtKind::Command(..)
             | StmtKind::Publish(..)
             | StmtKind::Tell { .. }
@@ -241,6 +253,60 @@ impl Compiler<'_> {
         Ok((a, n))
     }
 
+    /// Values one behind the other, as effects with several take them; the first register.
+    fn effect_values(&mut self, values: &[&Expr], at: Span) -> Compiled<(u32, Vec<u32>)> {
+        let mut widths = Vec::new();
+        for e in values {
+            widths.push(self.width(&e.ty, e.span)?);
+        }
+        let first = self.alloc(widths.iter().sum(), at)?;
+        let mut to = first;
+        for (e, n) in values.iter().zip(&widths) {
+            let place = self.gen_as(e, &e.ty, Some(to))?;
+            if place != Place::frame(to) {
+                self.copy(place, to, *n, e.span);
+            }
+            self.tidy(to, &e.ty, e.span)?;
+            to += n;
+        }
+        Ok((first, widths))
+    }
+
+    fn content_width(&mut self, content: Option<&Expr>) -> Compiled<u32> {
+        match content {
+            Some(e) if matches!(e.ty, Type::Record(_)) => self.width(&e.ty, e.span),
+            Some(e) => error(e.span, format!("a message carries a record, not {}", e.ty)),
+            None => Ok(0),
+        }
+    }
+
+    fn open_effect(&mut self, o: &Open) -> Compiled<(EffectCode, u32)> {
+        let n = self.content_width(o.content.as_ref())?;
+        let to = match &o.to.ty {
+            Type::Agent => Recipients::One,
+            Type::List(item, c) if **item == Type::Agent => Recipients::List(*c),
+            t => return error(o.to.span, format!("a conversation is opened with agents, not {t}")),
+        };
+        if let Some(w) = o.within.as_ref().filter(|w| w.ty != Type::Quantity(crate::Dim::TIME)) {
+            return error(w.span, format!("a duration is wanted here, not {}", w.ty));
+        }
+        let values: Vec<&Expr> = o.content.iter().chain([&o.to]).chain(&o.within).collect();
+        let (a, _) = self.effect_values(&values, o.to.span)?;
+        let (conversation, performative) = (o.conversation, o.performative.clone());
+        Ok((EffectCode::Open { conversation, performative, n, to, within: o.within.is_some() }, a))
+    }
+
+    fn reply_effect(&mut self, r: &Reply) -> Compiled<(EffectCode, u32)> {
+        let n = self.content_width(r.content.as_ref())?;
+        if !matches!(r.thread.ty, Type::Conversation(_)) {
+            return error(r.thread.span, format!("{} is no conversation", r.thread.ty));
+        }
+        let values: Vec<&Expr> = r.content.iter().chain([&r.thread]).collect();
+        let (a, _) = self.effect_values(&values, r.thread.span)?;
+        let (conversation, performative) = (r.conversation, r.performative.clone());
+        Ok((EffectCode::Reply { conversation, performative, reason: r.reason.clone(), n }, a))
+    }
+
     pub(super) fn gen_effect(&mut self, s: &Stmt) -> Compiled<()> {
         let Some(agent) = &self.agent else {
             return error(s.at, "there is no agent here that could do this");
@@ -280,6 +346,8 @@ impl Compiler<'_> {
                 let (performative, to, content) = (performative.clone(), to.clone(), name.clone());
                 (EffectCode::Tell { performative, to, content, n }, a)
             }
+            StmtKind::Open(o) => self.open_effect(o)?,
+            StmtKind::Reply(r) => self.reply_effect(r)?,
             StmtKind::Note(text, None) => (EffectCode::Note { text: text.clone(), value: None }, 0),
             StmtKind::Note(text, Some(e)) => {
                 let (a, n) = self.effect_value(e, &e.ty)?;

@@ -1,0 +1,432 @@
+//! Conversations: who talks with whom, where each side's copy of the protocol stands, and what comes too late.
+//!
+//! The protocol is kept for the agents: a message that it does not have in the sender's state is not sent, one
+//! that it does not have in the receiver's state is not handed over and answered with `not_understood`. A side
+//! that waits longer than the protocol says goes where the time-out leads; what comes after that is dropped.
+
+use super::{Engine, post::Letter, queue::Scheduled};
+use crate::{
+    Event, Thread, Time,
+    mission::code::{TalkCode, TriggerCode},
+    seed::chance,
+};
+use serde::{Deserialize, Serialize};
+use soifra_graph::Role;
+use std::{collections::BTreeMap, sync::Arc};
+
+/// A conversation between two agents.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Branch {
+    /// Index of the declaration.
+    conversation: u32,
+    /// As in messages: all that one message opened have the same.
+    id: String,
+    /// Those that were opened together.
+    group: u64,
+    /// Instances: initiator, participant.
+    peers: [u32; 2],
+    /// State of each side's copy.
+    states: [u32; 2],
+    /// Counts the states a side has been in, so that an old time-out is told from a new one.
+    entries: [u32; 2],
+    /// Messages of each side so far.
+    said: [u32; 2],
+    /// The last message that reached each side.
+    heard: [Option<String>; 2],
+}
+
+/// What was opened with one message.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+struct Group {
+    /// How many have not answered yet.
+    waiting: u32,
+    /// State that the initiator waits in.
+    state: u32,
+}
+
+/// All conversations that go on.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Talks {
+    branches: BTreeMap<u64, Branch>,
+    groups: BTreeMap<u64, Group>,
+    next: u64,
+    /// How many conversations each instance has opened.
+    opened: BTreeMap<u32, u32>,
+}
+
+/// A message of a conversation under way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Utterance {
+    pub branch: u64,
+    /// Who said it.
+    pub by: Role,
+    pub performative: String,
+    /// What an answer refers to.
+    pub reply_with: String,
+    pub registers: Vec<f64>,
+    /// Its record.
+    pub record: u64,
+}
+
+impl Talks {
+    /// Whether these can be conversations of a mission with so many instances and declarations.
+    pub fn fits(&self, instances: usize, states: &[usize]) -> bool {
+        self.branches.values().all(|b| {
+            let known = states.get(b.conversation as usize);
+            b.peers.iter().all(|p| (*p as usize) < instances)
+                && known.is_some_and(|n| b.states.iter().all(|s| (*s as usize) < *n))
+        })
+    }
+}
+
+impl Engine<'_> {
+    /// Opens a conversation with each of some agents.
+    pub(super) fn open_talk(
+        &mut self,
+        unit: u32,
+        conversation: u32,
+        performative: &str,
+        registers: &[f64],
+        to: &[f64],
+        within: Option<f64>,
+        cause: Option<u64>,
+    ) {
+        let sender = self.cast.units[unit as usize].instance;
+        let Some(c) = self.mission.graph.conversations.get(conversation as usize) else { return };
+        let opening = c.states.first().and_then(|s| s.move_of(Role::Initiator, performative));
+        let Some(target) = opening.map(|m| m.target) else { return };
+        let count = self.talks.opened.entry(sender).or_default();
+        *count += 1;
+        let count = *count;
+        let id = format!("{}/{}/{count}", c.name, self.agent_name(sender));
+        let group = self.talks.next;
+        let mut waiting = 0;
+        for n in to {
+            let peer = *n as u32;
+            if *n < 0.0 || peer as usize >= self.cast.instances.len() || peer == sender {
+                continue;
+            }
+            let branch = self.talks.next;
+            self.talks.next += 1;
+            waiting += 1;
+            self.talks.branches.insert(
+                branch,
+                Branch {
+                    conversation,
+                    id: id.clone(),
+                    group,
+                    peers: [sender, peer],
+                    states: [0, 0],
+                    entries: [0, 0],
+                    said: [0, 0],
+                    heard: [None, None],
+                },
+            );
+            let limit = within.and_then(Time::from_seconds);
+            self.utter(branch, Role::Initiator, performative, target, registers, None, limit, cause);
+        }
+        if waiting > 0 {
+            self.talks.groups.insert(group, Group { waiting, state: target });
+        } else {
+            self.talks.next += 1;
+            // Nobody was asked: everybody has answered.
+            self.release_talk(sender, conversation, None, sender, 0, &TalkCode::Settled, cause);
+        }
+    }
+
+    /// Says something in a conversation that is going on.
+    pub(super) fn reply_talk(
+        &mut self,
+        unit: u32,
+        thread: f64,
+        performative: &str,
+        reason: Option<&str>,
+        registers: &[f64],
+        cause: Option<u64>,
+    ) {
+        let me = self.cast.units[unit as usize].instance;
+        let number = thread as u64;
+        let side = self.talks.branches.get(&number).and_then(|b| {
+            let at = b.peers.iter().position(|p| *p == me)?;
+            Some(if at == 0 { Role::Initiator } else { Role::Participant })
+        });
+        let Some(side) = side else {
+            self.unsaid(me, performative, "the conversation is over", cause);
+            return;
+        };
+        let branch = &self.talks.branches[&number];
+        let c = &self.mission.graph.conversations[branch.conversation as usize];
+        let state = &c.states[branch.states[side.index()] as usize];
+        match state.move_of(side, performative) {
+            Some(m) => {
+                let target = m.target;
+                self.utter(number, side, performative, target, registers, reason, None, cause);
+            }
+            None => {
+                let why = match state.is_final() {
+                    true => "the conversation is over".to_string(),
+                    false => format!("{} does not say that in state {}", role(side), state.name),
+                };
+                self.unsaid(me, performative, &why, cause);
+            }
+        }
+    }
+
+    /// A message that is not sent.
+    fn unsaid(&mut self, instance: u32, performative: &str, why: &str, cause: Option<u64>) {
+        if self.recorder.on() {
+            let robot = self.cast.instances[instance as usize].robot;
+            let (agent, topic) = (self.agent_name(instance), performative.to_string());
+            let message = cause.unwrap_or(0);
+            let dropped = Some(format!("not sent: {why}"));
+            let event = Event::Delivery { robot, agent, topic, message, dropped };
+            self.recorder.record(self.now, cause, || event);
+        }
+    }
+
+    /// Sends a message; the sender's copy goes on at once.
+    fn utter(
+        &mut self,
+        number: u64,
+        by: Role,
+        performative: &str,
+        target: u32,
+        registers: &[f64],
+        reason: Option<&str>,
+        limit: Option<Time>,
+        cause: Option<u64>,
+    ) {
+        let Some(b) = self.talks.branches.get_mut(&number) else { return };
+        let c = &self.mission.graph.conversations[b.conversation as usize];
+        b.said[by.index()] += 1;
+        let mark = if by == Role::Initiator { "i" } else { "p" };
+        let reply_with = format!("{}/{mark}{}", number, b.said[by.index()]);
+        let (conversation, peers, id) = (b.conversation, b.peers, b.id.clone());
+        let in_reply_to = b.heard[by.index()].clone();
+        let channel = &self.channels[conversation as usize];
+        let (delay, loss) = (channel.delay, channel.loss);
+        let after = limit.or(channel.timeouts.get(target as usize).copied().flatten());
+        let holds = c.states[target as usize].holds_timeout(by);
+        let reply_by = after.filter(|_| holds).map(|t| self.now + t);
+        let from = peers[by.index()];
+        let to = peers[by.other().index()];
+        let record = if self.recorder.on() {
+            let content = c.states.iter().flat_map(|s| &s.moves).find(|m| *m.performative == *performative);
+            let content = content.and_then(|m| m.content.as_ref()).map(|n| n.to_string());
+            let thread = Thread {
+                conversation_id: Some(id),
+                protocol: Some(c.protocol.to_string()),
+                ontology: Some(c.ontology.to_string()),
+                reply_with: Some(reply_with.clone()),
+                in_reply_to,
+                reply_by,
+            };
+            let event = Event::Acl {
+                robot: self.cast.instances[from as usize].robot,
+                performative: performative.to_string(),
+                sender: self.agent_name(from),
+                receiver: self.agent_name(to),
+                content,
+                registers: registers.to_vec(),
+                reason: reason.map(str::to_string),
+                thread: Box::new(thread),
+            };
+            self.recorder.record(self.now, cause, || event)
+        } else {
+            None
+        };
+        let said = self.talks.branches[&number].said[by.index()];
+        self.enter(number, by, target, limit, record);
+        let lost = loss > 0.0
+            && chance(self.seed, 1 << 40 | u64::from(conversation), u64::from(from), number, u64::from(said)) < loss;
+        let utterance = Utterance {
+            branch: number,
+            by,
+            performative: performative.to_string(),
+            reply_with,
+            registers: registers.to_vec(),
+            record: record.unwrap_or(0),
+        };
+        if lost {
+            self.trace_utterance(&utterance, to, Some("lost on the way"));
+        } else {
+            self.queue.put(self.now + delay, Scheduled::Utter(utterance));
+        }
+    }
+
+    /// A side's copy of the protocol goes into a state.
+    fn enter(&mut self, number: u64, side: Role, state: u32, limit: Option<Time>, cause: Option<u64>) {
+        let Some(b) = self.talks.branches.get_mut(&number) else { return };
+        let before = std::mem::replace(&mut b.states[side.index()], state);
+        b.entries[side.index()] += 1;
+        let (entry, conversation, peers, group, id) =
+            (b.entries[side.index()], b.conversation, b.peers, b.group, b.id.clone());
+        let c = &self.mission.graph.conversations[conversation as usize];
+        let s = &c.states[state as usize];
+        let me = peers[side.index()];
+        if self.recorder.on() {
+            let robot = self.cast.instances[me as usize].robot;
+            let (agent, over) = (self.agent_name(me), s.is_final());
+            let event =
+                Event::Conversation { robot, agent, conversation_id: id, state: s.name.to_string(), over };
+            self.recorder.record(self.now, cause, || event);
+        }
+        if s.holds_timeout(side) {
+            let declared = self.channels[conversation as usize].timeouts[state as usize];
+            if let Some(after) = limit.or(declared) {
+                let due = self.now + after;
+                self.queue.put(due, Scheduled::Patience { branch: number, by: side, entry });
+            }
+        }
+        if side == Role::Initiator {
+            let settled = match self.talks.groups.get_mut(&group) {
+                Some(g) if before == g.state && state != g.state => {
+                    g.waiting = g.waiting.saturating_sub(1);
+                    g.waiting == 0
+                }
+                _ => false,
+            };
+            if settled {
+                self.talks.groups.remove(&group);
+                self.release_talk(me, conversation, Some(number), me, 0, &TalkCode::Settled, cause);
+            }
+        }
+        let over = |side: Role| c.states[self.talks.branches[&number].states[side.index()] as usize].is_final();
+        if over(Role::Initiator) && (over(Role::Participant) || self.talks.branches[&number].entries[1] == 0) {
+            // Who never heard of it is not told that it is over; what still comes finds nobody.
+            self.ended.push(number);
+        }
+    }
+
+    /// Conversations that are over for both sides are forgotten when nothing more is said in them at this
+    /// instant.
+    pub(super) fn forget_talks(&mut self) {
+        for number in std::mem::take(&mut self.ended) {
+            let Some(b) = self.talks.branches.get(&number) else { continue };
+            let c = &self.mission.graph.conversations[b.conversation as usize];
+            let over = |s: u32| c.states[s as usize].is_final();
+            if over(b.states[0]) && over(b.states[1]) {
+                self.talks.branches.remove(&number);
+            }
+        }
+    }
+
+    /// A message arrives.
+    pub(super) fn hear(&mut self, u: Utterance) {
+        let side = u.by.other();
+        let Some(b) = self.talks.branches.get(&u.branch) else { return };
+        let (conversation, peers) = (b.conversation, b.peers);
+        let me = peers[side.index()];
+        let c = &self.mission.graph.conversations[conversation as usize];
+        let state = &c.states[b.states[side.index()] as usize];
+        let Some(m) = state.move_of(u.by, &u.performative) else {
+            let why = match state.is_final() {
+                true => "the conversation is over".to_string(),
+                false => format!("unexpected in state {}", state.name),
+            };
+            let expected = state.is_final();
+            let answer = state.move_of(side, "not_understood").map(|m| m.target);
+            self.trace_utterance(&u, me, Some(&why));
+            if let (false, Some(target)) = (expected, answer) {
+                self.utter(u.branch, side, "not_understood", target, &[], Some(&why), None, Some(u.record));
+            }
+            if state.is_final() {
+                self.ended.push(u.branch);
+            }
+            return;
+        };
+        let target = m.target;
+        let record = self.trace_utterance(&u, me, None);
+        if let Some(b) = self.talks.branches.get_mut(&u.branch) {
+            b.heard[side.index()] = Some(u.reply_with.clone());
+        }
+        self.enter(u.branch, side, target, None, record);
+        let what = TalkCode::Message(u.performative.as_str().into());
+        let letter = (u.performative.clone(), u.registers, u.record);
+        self.deliver_talk(me, conversation, u.branch, peers[u.by.index()], &what, letter, record);
+    }
+
+    /// A side has waited long enough.
+    pub(super) fn patience(&mut self, number: u64, side: Role, entry: u32) {
+        let Some(b) = self.talks.branches.get(&number) else { return };
+        if b.entries[side.index()] != entry {
+            return;
+        }
+        let (conversation, peers) = (b.conversation, b.peers);
+        let c = &self.mission.graph.conversations[conversation as usize];
+        let Some((_, target)) = c.states[b.states[side.index()] as usize].timeout else { return };
+        self.enter(number, side, target, None, None);
+        let me = peers[side.index()];
+        let peer = peers[side.other().index()];
+        self.release_talk(me, conversation, Some(number), peer, 0, &TalkCode::Timeout, None);
+    }
+
+    fn release_talk(
+        &mut self,
+        me: u32,
+        conversation: u32,
+        number: Option<u64>,
+        peer: u32,
+        record: u64,
+        what: &TalkCode,
+        cause: Option<u64>,
+    ) {
+        let name = match what {
+            TalkCode::Timeout => "timeout",
+            _ => "settled",
+        };
+        let letter = (name.to_string(), Vec::new(), record);
+        self.deliver_talk(me, conversation, number.unwrap_or(u64::MAX >> 12), peer, what, letter, cause);
+    }
+
+    /// Puts a letter into the mailboxes of the units that wait for it.
+    fn deliver_talk(
+        &mut self,
+        me: u32,
+        conversation: u32,
+        number: u64,
+        peer: u32,
+        what: &TalkCode,
+        (topic, registers, record): (String, Vec<f64>, u64),
+        cause: Option<u64>,
+    ) {
+        let info = self.cast.instances[me as usize];
+        let units = &self.mission.agents[info.agent as usize].units;
+        let capacity = self.channels[conversation as usize].capacity;
+        let envelope = Some([f64::from(peer), number as f64]);
+        let letter = Arc::new(Letter { topic, registers, record, capacity, envelope });
+        for (u, code) in units.iter().enumerate() {
+            let TriggerCode::Talk { conversation: c, what: w } = &code.trigger else { continue };
+            if *c == conversation && w == what {
+                let unit = info.units + u as u32;
+                self.put_letter(unit, letter.clone(), cause);
+                self.open_mailbox(unit);
+            }
+        }
+    }
+
+    fn trace_utterance(&mut self, u: &Utterance, to: u32, dropped: Option<&str>) -> Option<u64> {
+        if !self.recorder.on() {
+            return None;
+        }
+        let robot = self.cast.instances[to as usize].robot;
+        let (agent, topic) = (self.agent_name(to), u.performative.clone());
+        let dropped = dropped.map(str::to_string);
+        let event = Event::Delivery { robot, agent, topic, message: u.record, dropped };
+        self.recorder.record(self.now, Some(u.record), || event)
+    }
+
+    /// `agent@robot`
+    pub(super) fn agent_name(&self, instance: u32) -> String {
+        let who = &self.cast.instances[instance as usize];
+        let agent = &self.mission.graph.agents[who.agent as usize].name;
+        format!("{agent}@{}", self.scene.robots[who.robot as usize].name)
+    }
+}
+
+fn role(side: Role) -> &'static str {
+    match side {
+        Role::Initiator => "the initiator",
+        Role::Participant => "the participant",
+    }
+}
