@@ -5,6 +5,7 @@
 //!
 //! Invariant: pure. Nothing here reads a file, a clock or a random source.
 
+pub mod allocation;
 pub mod behaviour;
 pub mod component;
 pub mod conversation;
