@@ -14,8 +14,11 @@ pub trait Loader {
 }
 
 /// The standard library: dotted name and text.
-pub const STANDARD: &[(&str, &str)] =
-    &[("std.prelude", include_str!("../std/prelude.soi")), ("std.motion", include_str!("../std/motion.soi")), ("std.protocols", include_str!("../std/protocols.soi"))];
+pub const STANDARD: &[(&str, &str)] = &[
+    ("std.prelude", include_str!("../std/prelude.soi")),
+    ("std.motion", include_str!("../std/motion.soi")),
+    ("std.protocols", include_str!("../std/protocols.soi")),
+];
 
 /// One file of the program.
 #[derive(Debug)]

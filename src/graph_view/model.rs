@@ -2,7 +2,8 @@
 
 use super::reach::{self, Reach};
 use soifra_graph::{
-    Agent, Conjunct, Expr, Graph, MachineState, PlanKind, PlanNode, Span, Strategy, Talk, Trigger, Unit, UnitKind,
+    Agent, Conjunct, Expr, Graph, MachineState, PlanKind, PlanNode, Span, Strategy, Talk, Trigger, Unit,
+    UnitKind,
 };
 use std::collections::BTreeMap;
 

@@ -24,10 +24,7 @@ impl Reach {
             Trigger::Message { topic, .. } => _ = r.heard.insert(*topic),
             Trigger::Reading(port) => _ = r.readings.insert(*port),
             Trigger::Event(e) => _ = r.waits.insert(*e),
-            Trigger::Every { .. }
-            | Trigger::Step { .. }
-            | Trigger::Told { .. }
-            | Trigger::Talk { .. } => {}
+            Trigger::Every { .. } | Trigger::Step { .. } | Trigger::Told { .. } | Trigger::Talk { .. } => {}
         }
         r.block(&unit.prelude);
         match &unit.kind {

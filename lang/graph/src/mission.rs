@@ -1,6 +1,8 @@
 //! The graph: everything a run is a function of, besides seed and recorded inputs.
 
-use crate::{Agent, Conversation, Expr, Name, Source, Span, Texts, Type, TypeTable, UserFunction, Value, span};
+use crate::{
+    Agent, Conversation, Expr, Name, Source, Span, Texts, Type, TypeTable, UserFunction, Value, span,
+};
 use serde::{Deserialize, Serialize};
 
 /// Version of the graph's form; a reader refuses others.

@@ -92,10 +92,16 @@ impl Costs<'_> {
             | StmtKind::Command(_, e)
             | StmtKind::Publish(_, e)
             | StmtKind::SetParam(_, e) => self.expr(e),
-            StmtKind::Open(o) => {
-                o.content.iter().chain([&o.to]).chain(&o.within).map(|e| self.expr(e)).fold(0, u64::saturating_add)
+            StmtKind::Open(o) => o
+                .content
+                .iter()
+                .chain([&o.to])
+                .chain(&o.within)
+                .map(|e| self.expr(e))
+                .fold(0, u64::saturating_add),
+            StmtKind::Reply(r) => {
+                self.expr(&r.thread).saturating_add(r.content.as_ref().map_or(0, |e| self.expr(e)))
             }
-            StmtKind::Reply(r) => self.expr(&r.thread).saturating_add(r.content.as_ref().map_or(0, |e| self.expr(e))),
             StmtKind::Each(each) => {
                 let n = match &each.list.ty {
                     Type::List(_, n) => u64::from(*n),

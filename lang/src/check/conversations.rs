@@ -4,8 +4,8 @@ use super::walk;
 use crate::{
     code,
     conversation::{
-        self as analysis, Action, Explored, Fault, Finding, MOST, Move, Party, Protocol, Queues, Silence, State,
-        Step,
+        self as analysis, Action, Explored, Fault, Finding, MOST, Move, Party, Protocol, Queues, Silence,
+        State, Step,
     },
 };
 use soifra_graph::{
@@ -29,9 +29,12 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         let partners = of.partners();
         let complete = partners.is_empty();
         out.extend(partners);
+        if !complete {
+            continue;
+        }
         out.extend(of.unheard());
-        if sound && complete {
-            out.extend(of.stuck(g));
+        if sound {
+            out.extend(of.stuck());
         }
     }
     out
@@ -46,22 +49,23 @@ fn structure(c: &Conversation) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for f in analysis::faults(&names.protocol) {
         out.push(match f {
-            Fault::Unreachable { state } => {
-                Diagnostic::error(code::PROTOCOL, format!("state `{}` of `{}` cannot be reached", name(state), c.protocol))
-                    .at(at(state), "nothing leads here")
-                    .hint("add a message that leads here, or remove it")
-            }
-            Fault::Endless { state } => {
-                Diagnostic::error(code::PROTOCOL, format!("from state `{}` of `{}` no end is reached", name(state), c.protocol))
-                    .at(at(state), "no way out leads to a state without messages")
-                    .hint("let a message or a time-out lead to a last state: `state done`")
-            }
-            Fault::Ambiguous { state, role, message } => Diagnostic::error(
+            Fault::Unreachable { state } => Diagnostic::error(
                 code::PROTOCOL,
-                format!("`{}` leads to two states", names.message(message)),
+                format!("state `{}` of `{}` cannot be reached", name(state), c.protocol),
             )
-            .at(at(state), format!("the {} says it twice here", word(role)))
-            .hint("keep one of them, or use another performative"),
+            .at(at(state), "nothing leads here")
+            .hint("add a message that leads here, or remove it"),
+            Fault::Endless { state } => Diagnostic::error(
+                code::PROTOCOL,
+                format!("from state `{}` of `{}` no end is reached", name(state), c.protocol),
+            )
+            .at(at(state), "no way out leads to a state without messages")
+            .hint("let a message or a time-out lead to a last state: `state done`"),
+            Fault::Ambiguous { state, role, message } => {
+                Diagnostic::error(code::PROTOCOL, format!("`{}` leads to two states", names.message(message)))
+                    .at(at(state), format!("the {} says it twice here", word(role)))
+                    .hint("keep one of them, or use another performative")
+            }
             Fault::Livelock { states, .. } => {
                 let first = states.first().copied().unwrap_or(0);
                 Diagnostic::error(code::PROTOCOL, format!("time-outs of `{}` go round in a ring", c.protocol))
@@ -70,6 +74,9 @@ fn structure(c: &Conversation) -> Vec<Diagnostic> {
             }
         });
     }
+    // A ring has no end: told once.
+    let mut seen = std::collections::BTreeSet::new();
+    out.retain(|d: &Diagnostic| seen.insert(d.position()));
     out
 }
 
@@ -185,7 +192,9 @@ impl<'g> Speakers<'g> {
                 out.push(
                     Diagnostic::error(code::NOBODY, format!("nobody offers `{name}`"))
                         .at(at, "opened here")
-                        .hint(format!("add `offers {name}` to the agent that answers, and let a robot or host run it")),
+                        .hint(format!(
+                            "add `offers {name}` to the agent that answers, and let a robot or host run it"
+                        )),
                 );
             }
             (None, Some(p)) => {
@@ -202,7 +211,9 @@ impl<'g> Speakers<'g> {
                 out.push(
                     Diagnostic::error(code::NOBODY, format!("nobody opens or offers `{name}`"))
                         .at(at, "takes part in it")
-                        .hint(format!("one agent offers it, another opens it: `offers {name}`, `open {name} …`")),
+                        .hint(format!(
+                            "one agent offers it, another opens it: `offers {name}`, `open {name} …`"
+                        )),
                 );
             }
             (Some(_), Some(_)) => {}
@@ -214,8 +225,10 @@ impl<'g> Speakers<'g> {
     /// that do not say them.
     fn unheard(&self) -> Vec<Diagnostic> {
         let mut out: Vec<Diagnostic> = Vec::new();
-        let sides =
-            [(Role::Initiator, &self.openers, &self.offerers), (Role::Participant, &self.offerers, &self.openers)];
+        let sides = [
+            (Role::Initiator, &self.openers, &self.offerers),
+            (Role::Participant, &self.offerers, &self.openers),
+        ];
         for (role, speakers, listeners) in sides {
             let of_role = |p: &Name| {
                 self.c.states.iter().flat_map(|s| &s.moves).find(|m| m.by == role && m.performative == *p)
@@ -230,7 +243,10 @@ impl<'g> Speakers<'g> {
                             out.push(
                                 Diagnostic::error(
                                     code::UNREAD_TOPIC,
-                                    format!("`{}` does not listen to {p} {record} of `{}`", l.agent.name, self.c.name),
+                                    format!(
+                                        "`{}` does not listen to {p} {record} of `{}`",
+                                        l.agent.name, self.c.name
+                                    ),
                                 )
                                 .at(*at, "said here")
                                 .at(l.agent.span, "has no unit for it")
@@ -267,7 +283,7 @@ impl<'g> Speakers<'g> {
     }
 
     /// Explores what every opener can have with every offerer.
-    fn stuck(&self, g: &Graph) -> Vec<Diagnostic> {
+    fn stuck(&self) -> Vec<Diagnostic> {
         let names = Names::new(self.c);
         let number = |name: &str| {
             let e = self.c.channel.args.iter().find(|(n, _)| &**n == name).map(|(_, e)| e);
@@ -280,7 +296,8 @@ impl<'g> Speakers<'g> {
         let mut out: Vec<Diagnostic> = Vec::new();
         for a in &self.openers {
             for b in &self.offerers {
-                let parties = [self.party(&names, a, Role::Initiator), self.party(&names, b, Role::Participant)];
+                let parties =
+                    [self.party(&names, a, Role::Initiator), self.party(&names, b, Role::Participant)];
                 let explored = analysis::explore(&names.protocol, &parties, queues, MOST);
                 for d in self.told(&names, [a, b], &explored) {
                     if !out.iter().any(|o| o.code == d.code && o.position() == d.position()) {
@@ -289,7 +306,6 @@ impl<'g> Speakers<'g> {
                 }
             }
         }
-        let _ = g;
         out
     }
 
@@ -325,6 +341,16 @@ impl<'g> Speakers<'g> {
         })
     }
 
+    /// The unit of a speaker that a message into a state releases.
+    fn unit_into(&self, s: &Speaker<'_>, state: u32) -> Option<Span> {
+        let moves = self.c.states.iter().flat_map(|s| &s.moves).filter(|m| m.target == state);
+        let names: Vec<&Name> = moves.map(|m| &m.performative).collect();
+        s.hears.iter().find_map(|(u, what, _)| match what {
+            Talk::Message { performative, .. } if names.contains(&performative) => Some(u.span),
+            _ => None,
+        })
+    }
+
     fn told(&self, names: &Names, speakers: [&Speaker<'_>; 2], e: &Explored) -> Vec<Diagnostic> {
         let who = |r: analysis::Role| &*speakers[r.index()].agent.name;
         let state = |i: u32| self.c.states.get(i as usize);
@@ -337,15 +363,26 @@ impl<'g> Speakers<'g> {
                     if waits.iter().any(|w| w.unexpected.is_some()) {
                         continue;
                     }
-                    let Some(w) = waits.first() else { continue };
-                    let mut d = Diagnostic::error(
-                        code::STUCK,
-                        format!("`{}` can wait for ever in state `{}` of `{}`", who(w.role), name(w.state), self.c.name),
-                    )
-                    .at(at(w.state), why(names, who(w.role), who(w.role.other()), w));
-                    for s in speakers {
-                        d = d.at(s.agent.span, format!("{}", if s.agent.name == speakers[0].agent.name { "the initiator" } else { "the participant" }));
-                    }
+                    let to_speak = |w: &&analysis::Wait| w.silence != Silence::OthersTurn;
+                    let Some(w) = waits.iter().find(to_speak).or(waits.first()) else { continue };
+                    let title = format!(
+                        "`{}` can wait for ever in state `{}` of `{}`",
+                        who(w.role),
+                        name(w.state),
+                        self.c.name
+                    );
+                    let label = why(names, who(w.role), who(w.role.other()), w);
+                    let speaker = speakers[w.role.index()];
+                    // What is to be mended comes first.
+                    let mut d = Diagnostic::error(code::STUCK, title);
+                    d = match w.silence {
+                        Silence::Chosen | Silence::Unable => {
+                            let unit = self.unit_into(speaker, w.state);
+                            d.at(unit.unwrap_or(speaker.agent.span), label)
+                                .at(at(w.state), "is to speak in this state")
+                        }
+                        _ => d.at(at(w.state), label),
+                    };
                     d = d.at(self.c.at, history(names, &who, witness));
                     out.push(d.hint(match w.silence {
                         Silence::Unable => "let it say one of the messages of this state, or give the state a time-out: `after 5 s -> …`",
@@ -356,11 +393,21 @@ impl<'g> Speakers<'g> {
                 Finding::Unexpected { role, state: s, message, witness } => out.push(
                     Diagnostic::error(
                         code::STUCK,
-                        format!("`{}` may come when `{}` does not expect it", names.message(*message), who(*role)),
+                        format!(
+                            "`{}` may come when `{}` does not expect it",
+                            names.message(*message),
+                            who(*role)
+                        ),
                     )
-                    .at(at(*s), format!("is in this state, which does not have `{}`", names.message(*message)))
+                    .at(
+                        at(*s),
+                        format!("is in this state, which does not have `{}`", names.message(*message)),
+                    )
                     .at(self.c.at, history(names, &who, witness))
-                    .hint(format!("add `{}` to the state, or let nobody say it there", names.message(*message))),
+                    .hint(format!(
+                        "add `{}` to the state, or let nobody say it there",
+                        names.message(*message)
+                    )),
                 ),
                 Finding::NotProven { seen } => out.push(
                     Diagnostic::warning(code::STUCK, format!("`{}` is not proven to end", self.c.name))

@@ -72,7 +72,8 @@ impl<'a> Types<'a> {
             let n = c.states.len();
             for s in &c.states {
                 let known = |m: &soifra_graph::ProtocolMove| {
-                    (m.target as usize) < n && m.content.as_ref().is_none_or(|r| g.types.records.contains_key(r))
+                    (m.target as usize) < n
+                        && m.content.as_ref().is_none_or(|r| g.types.records.contains_key(r))
                 };
                 if !s.moves.iter().all(known) || s.timeout.as_ref().is_some_and(|t| t.1 as usize >= n) {
                     self.bad(s.at, "a protocol leads nowhere");
@@ -191,11 +192,13 @@ impl<'a> Types<'a> {
                     let names = local(*sender) == Some(&Type::Agent)
                         && c.is_some_and(|c| local(*thread) == Some(&Type::Conversation(c.name.clone())));
                     let content = match what {
-                        soifra_graph::Talk::Message { performative, content: Some(l) } => c.is_some_and(|c| {
-                            let mut moves = c.states.iter().flat_map(|s| &s.moves);
-                            let m = moves.find(|m| m.performative == *performative);
-                            m.and_then(|m| m.content.clone()).map(Type::Record).as_ref() == local(*l)
-                        }),
+                        soifra_graph::Talk::Message { performative, content: Some(l) } => {
+                            c.is_some_and(|c| {
+                                let mut moves = c.states.iter().flat_map(|s| &s.moves);
+                                let m = moves.find(|m| m.performative == *performative);
+                                m.and_then(|m| m.content.clone()).map(Type::Record).as_ref() == local(*l)
+                            })
+                        }
                         _ => true,
                     };
                     if !names || !content {
@@ -293,7 +296,9 @@ impl<'a> Types<'a> {
                 }
                 return;
             }
-            StmtKind::Open(o) => return self.message(s.at, o.conversation, &o.performative, o.content.as_ref()),
+            StmtKind::Open(o) => {
+                return self.message(s.at, o.conversation, &o.performative, o.content.as_ref());
+            }
             StmtKind::Reply(r) => {
                 let name = self.g.conversations.get(r.conversation as usize).map(|c| c.name.clone());
                 if name.is_none_or(|n| r.thread.ty != Type::Conversation(n)) {

@@ -93,8 +93,6 @@ pub fn is_plain(stmt: &Node<'_>) -> bool {
 
 /// Whether a statement is mostly braces, which open on its first line.
 fn is_blocky(stmt: &Node<'_>) -> bool {
-    children(stmt.clone()).all(|c| matches!(
-        c.as_rule(),
-        Rule::if_stmt | Rule::for_stmt | Rule::match_stmt | Rule::rules_stmt
-    ))
+    children(stmt.clone())
+        .all(|c| matches!(c.as_rule(), Rule::if_stmt | Rule::for_stmt | Rule::match_stmt | Rule::rules_stmt))
 }

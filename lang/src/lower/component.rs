@@ -148,7 +148,8 @@ impl<'a> Checker<'a> {
             Some(c) => Some(self.in_body(Body::new(Place::Start), |s| s.typed(c, &Type::Int)).0?),
             None => None,
         };
-        let mut body = Body::new(if matches!(&**role, "topic" | "conversation") { Place::Start } else { Place::Scene });
+        let mut body =
+            Body::new(if matches!(&**role, "topic" | "conversation") { Place::Start } else { Place::Scene });
         let index = Ident { name: "index".into(), span };
         body.bind(&index, &Type::Int);
         let (typed, _) = self.in_body(body, |s| s.model_arguments(&found.signature, model, args, span));

@@ -15,7 +15,11 @@ impl<'a> Checker<'a> {
     /// Every protocol by itself, then every conversation.
     pub(super) fn conversations(&mut self, program: &Program) {
         for p in self.decls.protocols.values().copied() {
+            let before = self.errors.len();
             self.protocol(p);
+            if self.errors.len() > before {
+                self.poison(&p.name.name);
+            }
         }
         for c in self.decls.conversations.clone() {
             match self.conversation(c, program) {
@@ -88,6 +92,9 @@ impl<'a> Checker<'a> {
             self.report(d);
             return None;
         };
+        if self.poisoned.contains_key(&p.name.name) {
+            return None;
+        }
         let contents = self.contents(c, p)?;
         let mut params = Vec::new();
         for (n, t) in &p.params {
@@ -149,7 +156,11 @@ impl<'a> Checker<'a> {
                     format!("`{}` has {} contents, {} are given", p.name.name, names.len(), c.contents.len()),
                 )
                 .at(c.protocol.span, format!("wants records for {}", names.join(", ")))
-                .hint(format!("write `{}<{}>` with records in their places", p.name.name, names.join(", "))),
+                .hint(format!(
+                    "write `{}<{}>` with records in their places",
+                    p.name.name,
+                    names.join(", ")
+                )),
             );
             return None;
         }

@@ -14,6 +14,12 @@ impl<'a> Checker<'a> {
     pub fn unit(&mut self, u: &'a ast::Unit, states: &mut Vec<State>) -> Option<Unit> {
         let mut body = Body::new(Place::Behaviour);
         let trigger = self.trigger(&u.name, &u.trigger, &mut body);
+        let names =
+            matches!(u.trigger.kind, TriggerKind::Topic(..) | TriggerKind::Told(..) | TriggerKind::Talk(..));
+        if trigger.is_none() && names {
+            // Without what it names, all of the body would be unknown.
+            return None;
+        }
         let timing = self.timing(&u.timing, trigger.as_ref());
         body.refines = matches!(u.kind, ast::UnitKind::Service(_)) && timing.budget.is_some();
         let (kind, body) = self.in_body(body, |c| match &u.kind {
@@ -136,7 +142,11 @@ impl<'a> Checker<'a> {
             "timeout" => soifra_graph::Talk::Timeout,
             "settled" => soifra_graph::Talk::Settled,
             _ => {
-                let carried = self.carried(i, what)?;
+                let carried = self.carried(i, what);
+                if let (None, Some(c)) = (&carried, content) {
+                    self.poison(&c.name);
+                }
+                let carried = carried?;
                 let content = match (content, carried) {
                     (Some(n), Some(record)) => Some(body.bind(n, &Type::Record(record))),
                     (None, _) => None,

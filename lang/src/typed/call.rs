@@ -83,7 +83,10 @@ impl Checker<'_> {
             .chain(self.decls.functions.keys().map(|k| k.to_string()))
             .chain(self.types.records.keys().map(|k| k.to_string()))
             .chain(lists::LIST_OPS.iter().map(|s| (*s).to_string()))
-            .chain(["heard", "offering", "sqrt", "dot", "transpose", "inverse", "matrix", "item"].map(String::from))
+            .chain(
+                ["heard", "offering", "sqrt", "dot", "transpose", "inverse", "matrix", "item"]
+                    .map(String::from),
+            )
             .collect();
         let d = unknown(code::UNKNOWN_NAME, "function", &f.name, f.span, known.iter().map(String::as_str));
         self.report(d);

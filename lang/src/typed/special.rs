@@ -63,11 +63,15 @@ impl Checker<'_> {
                 .agents
                 .iter()
                 .flat_map(|a| &a.members)
-                .filter_map(|m| if let AgentMember::Offers(n, _) = m { Some(n.name.to_string()) } else { None })
+                .filter_map(
+                    |m| if let AgentMember::Offers(n, _) = m { Some(n.name.to_string()) } else { None },
+                )
                 .collect();
-            let mut d =
-                unknown(code::NOBODY, "service", &name, value.span, names.iter().map(String::as_str));
+            let mut d = unknown(code::NOBODY, "service", &name, value.span, names.iter().map(String::as_str));
             d.title = format!("nobody offers `{name}`");
+            if names.is_empty() {
+                d.hint = Some(format!("add `offers {name}` to the agent that does it"));
+            }
             self.report(d);
             return None;
         }

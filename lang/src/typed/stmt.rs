@@ -3,8 +3,8 @@
 use super::Checker;
 use crate::{ast::*, code, decls::unknown};
 use soifra_graph::{
-    Conjunct, Diagnostic, Expr as GExpr, Each, Name, Op, Open, Refine, Reply, Role, Rule, Span, Stmt as GStmt, StmtKind as GStmtKind,
-    Type,
+    Conjunct, Diagnostic, Each, Expr as GExpr, Name, Op, Open, Refine, Reply, Role, Rule, Span,
+    Stmt as GStmt, StmtKind as GStmtKind, Type,
 };
 
 /// Deepest nesting of blocks.
@@ -186,13 +186,7 @@ impl<'a> Checker<'a> {
         let Some(i) = self.conversations.position(&conversation.name) else {
             let names: Vec<Name> = self.conversations.iter().map(|c| c.name.clone()).collect();
             let known = names.iter().map(|n| &**n);
-            let d = unknown(
-                code::UNKNOWN_NAME,
-                "conversation",
-                &conversation.name,
-                conversation.span,
-                known,
-            );
+            let d = unknown(code::UNKNOWN_NAME, "conversation", &conversation.name, conversation.span, known);
             self.report(d);
             return None;
         };
@@ -259,8 +253,9 @@ impl<'a> Checker<'a> {
             },
         };
         let Type::Conversation(name) = &thread.ty else {
-            let d = Diagnostic::error(code::MISMATCH, format!("a conversation is wanted, this is {}", thread.ty))
-                .at(thread.span, thread.ty.to_string());
+            let d =
+                Diagnostic::error(code::MISMATCH, format!("a conversation is wanted, this is {}", thread.ty))
+                    .at(thread.span, thread.ty.to_string());
             self.report(match &thread.ty {
                 Type::Option(_) => d.hint("take it out first: `when STATE is some(c) => reply … in c`"),
                 _ => d.hint("in a unit `on CONVERSATION …` it is called `conversation`"),

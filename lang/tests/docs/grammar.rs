@@ -217,6 +217,7 @@ const IN_WORDS: &[&str] = &[
     "head",
     "piece",
     "ITEM_START",
+    "STMT_END",
     "tokens",
     "token",
     "name_token",

@@ -302,8 +302,13 @@ impl Engine<'_> {
         }
         let name = self.mission.topics[topic as usize].name.to_string();
         let (delay, capacity) = (board.channel.delay, board.channel.capacity);
-        let letter =
-            Letter { topic: name, registers: registers.to_vec(), record: record.unwrap_or(0), capacity, envelope: None };
+        let letter = Letter {
+            topic: name,
+            registers: registers.to_vec(),
+            record: record.unwrap_or(0),
+            capacity,
+            envelope: None,
+        };
         for u in lost {
             self.trace_delivery(u, &letter, Some("lost on the way"));
         }
@@ -345,7 +350,8 @@ impl Engine<'_> {
                 }
             }
         }
-        let letter = Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
+        let letter =
+            Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
         if to.is_empty() {
             self.recorder.record(now, record, || Event::Delivery {
                 robot: who.robot,

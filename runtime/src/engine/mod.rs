@@ -58,8 +58,8 @@ use senses::Senses;
 use serde::{Deserialize, Serialize};
 pub use snapshot::Snapshot;
 use soifra_graph::Texts;
-use talks::Talks;
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+use talks::Talks;
 
 /// One run of a mission.
 pub struct Engine<'m> {

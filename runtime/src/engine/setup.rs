@@ -238,8 +238,10 @@ fn talk_channels(mission: &Mission, start: &mut Start<'_>) -> Result<Vec<TalkCha
         };
         let (loss, capacity) = (number(code.loss.as_ref(), 0.0)?, number(code.capacity.as_ref(), 64.0)?);
         if !(0.0..=1.0).contains(&loss) || !(1.0..=MOST_CAPACITY).contains(&capacity) {
-            let text =
-                format!("conversation `{}` cannot have a loss of {loss} and a capacity of {capacity}", c.name);
+            let text = format!(
+                "conversation `{}` cannot have a loss of {loss} and a capacity of {capacity}",
+                c.name
+            );
             return Err(Diagnostic::error(START_VALUE, text).at(c.at, "here"));
         }
         let mut timeouts = Vec::new();

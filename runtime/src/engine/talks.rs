@@ -238,7 +238,8 @@ impl Engine<'_> {
         let said = self.talks.branches[&number].said[by.index()];
         self.enter(number, by, target, limit, record);
         let lost = loss > 0.0
-            && chance(self.seed, 1 << 40 | u64::from(conversation), u64::from(from), number, u64::from(said)) < loss;
+            && chance(self.seed, 1 << 40 | u64::from(conversation), u64::from(from), number, u64::from(said))
+                < loss;
         let utterance = Utterance {
             branch: number,
             by,
@@ -291,8 +292,10 @@ impl Engine<'_> {
                 self.release_talk(me, conversation, Some(number), me, 0, &TalkCode::Settled, cause);
             }
         }
-        let over = |side: Role| c.states[self.talks.branches[&number].states[side.index()] as usize].is_final();
-        if over(Role::Initiator) && (over(Role::Participant) || self.talks.branches[&number].entries[1] == 0) {
+        let over =
+            |side: Role| c.states[self.talks.branches[&number].states[side.index()] as usize].is_final();
+        if over(Role::Initiator) && (over(Role::Participant) || self.talks.branches[&number].entries[1] == 0)
+        {
             // Who never heard of it is not told that it is over; what still comes finds nobody.
             self.ended.push(number);
         }

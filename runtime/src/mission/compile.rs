@@ -3,8 +3,8 @@
 use super::{code::*, uses::Uses};
 use crate::nodes::{Act, Kind, MAX_DEPTH, Part, Tree};
 use soifra_graph::{
-    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy, Talk, Timing,
-    Trigger, Type, Unit, UnitKind,
+    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy, Talk,
+    Timing, Trigger, Type, Unit, UnitKind,
     eval::{Block, CompileError, Compiler, Layout, Scope},
 };
 
@@ -276,13 +276,17 @@ fn trigger(
                 Talk::Settled => (TriggerCode::Talk { conversation, what: TalkCode::Settled }, None),
                 Talk::Message { performative, content } => {
                     let mut moves = of.states.iter().flat_map(|s| &s.moves);
-                    let carried = moves.find(|m| m.performative == *performative).and_then(|m| m.content.clone());
+                    let carried =
+                        moves.find(|m| m.performative == *performative).and_then(|m| m.content.clone());
                     let letter = match (content, carried) {
                         (Some(local), Some(record)) => letter(*local, &Type::Record(record))?,
                         (None, _) => None,
                         _ => return damaged(unit.span, "a message that carries nothing is named"),
                     };
-                    (TriggerCode::Talk { conversation, what: TalkCode::Message(performative.clone()) }, letter)
+                    (
+                        TriggerCode::Talk { conversation, what: TalkCode::Message(performative.clone()) },
+                        letter,
+                    )
                 }
             }
         }

@@ -69,7 +69,19 @@ impl Mission {
             Some((agents, groups, topics, talks, judge, scene)) if errors.is_empty() => {
                 let params = Layout::params(&graph);
                 let frame = agents.iter().map(|a| a.frame).max().unwrap_or(0);
-                Ok(Mission { graph, texts, program, params, frame, agents, groups, topics, talks, judge, scene })
+                Ok(Mission {
+                    graph,
+                    texts,
+                    program,
+                    params,
+                    frame,
+                    agents,
+                    groups,
+                    topics,
+                    talks,
+                    judge,
+                    scene,
+                })
             }
             _ => Err(errors.into_iter().map(diagnostic).collect()),
         }
@@ -104,8 +116,7 @@ impl Mission {
     }
 }
 
-type Parts =
-    (Vec<AgentCode>, Vec<GroupCode>, Vec<TopicCode>, Vec<TalkChannelCode>, JudgeCode, SceneCode);
+type Parts = (Vec<AgentCode>, Vec<GroupCode>, Vec<TopicCode>, Vec<TalkChannelCode>, JudgeCode, SceneCode);
 
 fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) -> Option<Parts> {
     fn keep<T>(result: Compiled<T>, errors: &mut Vec<CompileError>) -> Option<T> {

@@ -229,15 +229,40 @@ pub(super) struct ListRef {
 /// How an effect is done.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum EffectCode {
-    Tell { performative: Name, to: Name, content: Name, n: u32 },
+    Tell {
+        performative: Name,
+        to: Name,
+        content: Name,
+        n: u32,
+    },
     /// Registers: content, then the agents, then the time to wait.
-    Open { conversation: u32, performative: Name, n: u32, to: Recipients, within: bool },
+    Open {
+        conversation: u32,
+        performative: Name,
+        n: u32,
+        to: Recipients,
+        within: bool,
+    },
     /// Registers: content, then the conversation.
-    Reply { conversation: u32, performative: Name, reason: Option<String>, n: u32 },
-    Note { text: String, value: Option<(Type, u32)> },
+    Reply {
+        conversation: u32,
+        performative: Name,
+        reason: Option<String>,
+        n: u32,
+    },
+    Note {
+        text: String,
+        value: Option<(Type, u32)>,
+    },
     Raise(u32),
-    SetParam { param: u32, n: u32 },
-    Rule { rule: u32, at: Span },
+    SetParam {
+        param: u32,
+        n: u32,
+    },
+    Rule {
+        rule: u32,
+        at: Span,
+    },
 }
 
 /// Whom a conversation is opened with.

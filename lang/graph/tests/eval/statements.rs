@@ -238,3 +238,68 @@ fn a_refused_effect_ends_the_run() {
     assert_eq!(refused, Err(FaultKind::Refused("no more".into())));
     assert_eq!(world.done.len(), 1);
 }
+
+/// The list is taken as it was when the loop began, whatever its statements set.
+#[test]
+fn a_loop_does_its_statements_for_each_item() {
+    let (mut world, mut registers) = (World::default(), Registers::new(&graph()));
+    let numbers =
+        constant(Value::List(vec![Value::Int(3), Value::Int(5), Value::Int(7)]), list(Type::Int, 4));
+    let add = binary(Binary::Add, x(), op(Op::Sqrt, vec![number(4.0)], Type::NUMBER));
+    let body = vec![
+        stmt(StmtKind::If(binary(Binary::Eq, local(0, Type::Int), int(5)), vec![note("five")], vec![])),
+        set_x(add),
+        stmt(StmtKind::Note("x".into(), Some(x()))),
+    ];
+    let each = Each { list: numbers, local: 0, body };
+    run(vec![stmt(StmtKind::Each(Box::new(each)))], &[Type::Int], &mut registers, &mut world).unwrap();
+    let x = |v: f64| Done::Note("x".into(), Some((Type::NUMBER, vec![v])));
+    assert_eq!(world.done, [x(2.0), Done::Note("five".into(), None), x(4.0), x(6.0)]);
+    assert_eq!(registers.states[0], 6.0);
+}
+
+#[test]
+fn a_loop_over_a_state_that_it_changes_ends() {
+    let (mut world, mut registers) = (World::default(), Registers::new(&graph()));
+    let trail = || op(Op::State(1), vec![], list(point(), 4));
+    let push = |e: Expr| stmt(StmtKind::Set(1, call(Function::Push, vec![trail(), e], list(point(), 4))));
+    let first = constant(Value::Vector([1.0, 2.0, 3.0]), point());
+    let each = Each { list: trail(), local: 0, body: vec![push(local(0, point())), note("again")] };
+    let stmts = vec![push(first), stmt(StmtKind::Each(Box::new(each)))];
+    run(stmts, &[point()], &mut registers, &mut world).unwrap();
+    assert_eq!(world.done, [Done::Note("again".into(), None)]);
+    assert_eq!(registers.states[1], 2.0, "one more point");
+}
+
+#[test]
+fn what_is_said_in_conversations_reaches_the_surroundings() {
+    let (mut world, mut registers) = (World::default(), Registers::new(&graph()));
+    let agents =
+        |n: &[i64]| constant(Value::List(n.iter().map(|i| Value::Int(*i)).collect()), list(Type::Agent, 4));
+    let none = op(Op::MakeNone("too far".into()), vec![], LENGTH.optional());
+    let at_one = constant(Value::Vector([1.0, 2.0, 3.0]), point());
+    let message = op(Op::MakeRecord, vec![int(6), at_one, none], beacon());
+    let open = |to: Expr, within: Option<Expr>| {
+        let content = Some(message.clone());
+        let open = Open { conversation: 0, performative: "cfp".into(), content, to, within };
+        stmt(StmtKind::Open(Box::new(open)))
+    };
+    let one = constant(Value::Int(9), Type::Agent);
+    let second = constant(Value::Number(2.0), Type::Quantity(Dim::TIME));
+    let thread = constant(Value::Int(12), Type::Conversation("deliver".into()));
+    let reason = Some("busy".to_string());
+    let reply = Reply { conversation: 0, performative: "refuse".into(), content: None, reason, thread };
+    let stmts =
+        vec![open(agents(&[4, 5]), None), open(one, Some(second)), stmt(StmtKind::Reply(Box::new(reply)))];
+    run(stmts, &[], &mut registers, &mut world).unwrap();
+    let tag = (reason::REASONS.len() + 1) as f64;
+    let sent = vec![6.0, 1.0, 2.0, 3.0, tag, 0.0];
+    assert_eq!(
+        world.done,
+        [
+            Done::Open(0, "cfp".into(), sent.clone(), vec![4.0, 5.0], None),
+            Done::Open(0, "cfp".into(), sent, vec![9.0], Some(2.0)),
+            Done::Reply(0, "refuse".into(), Some("busy".into()), vec![], 12.0),
+        ]
+    );
+}

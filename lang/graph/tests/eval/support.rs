@@ -94,6 +94,8 @@ pub enum Done {
     Publish(u32, Vec<f64>),
     Tell(String, String, String, Vec<f64>),
     Note(String, Option<(Type, Vec<f64>)>),
+    Open(u32, String, Vec<f64>, Vec<f64>, Option<f64>),
+    Reply(u32, String, Option<String>, Vec<f64>, f64),
     Raise(u32),
     SetParam(u32, Vec<f64>),
     Rule(u32),
@@ -208,10 +210,12 @@ impl Env for World {
                 Done::Note(text.into(), value.map(|(t, r)| (t.clone(), r.to_vec())))
             }
             Effect::Open { conversation, performative, registers, to, within } => {
-                format!("open {conversation} {performative} {registers:?} to {to:?} within {within:?}")
+                let content = registers.to_vec();
+                Done::Open(conversation, performative.into(), content, to.to_vec(), within)
             }
             Effect::Reply { conversation, performative, reason, registers, thread } => {
-                format!("reply {conversation} {performative} {reason:?} {registers:?} in {thread}")
+                let reason = reason.map(str::to_string);
+                Done::Reply(conversation, performative.into(), reason, registers.to_vec(), thread)
             }
             Effect::Raise(event) => Done::Raise(event),
             Effect::SetParam { param, registers } => Done::SetParam(param, registers.to_vec()),

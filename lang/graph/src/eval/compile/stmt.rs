@@ -1,9 +1,9 @@
 //! Code for statements and guards.
 
+use super::Place;
 use super::emit::error;
 use super::expr::gives;
 use super::{Compiled, Compiler, MAX_DEPTH};
-use super::Place;
 use crate::eval::code::{EffectCode, Instr, Recipients};
 use crate::{Conjunct, Expr, Open, Reply, Rule, Span, Stmt, StmtKind, Type};
 
