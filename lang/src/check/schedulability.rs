@@ -26,7 +26,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
 
 /// Units that may be released as often as something happens.
 fn unlimited(g: &Graph, core: &Core) -> Vec<Diagnostic> {
-    let wants = core.tasks.iter().any(|t| t.misses != Misses::Soft && t.deadline.is_some());
+    let wants = core.tasks.iter().any(|t| t.misses == Misses::Hard && t.deadline.is_some());
     let open = core.tasks.iter().filter(|t| wants && t.period.is_none());
     open.map(|t| {
         Diagnostic::error(
@@ -47,9 +47,10 @@ fn unlimited(g: &Graph, core: &Core) -> Vec<Diagnostic> {
 
 /// Units that may be late, with those that make them wait.
 fn late(core: &Core) -> Vec<Diagnostic> {
-    let hard = |t: &&Task| t.misses != Misses::Soft;
+    // Who may miss some pays for those who may miss none.
+    let hard = |t: &Task| t.misses == Misses::Hard;
     let used = core.utilization.unwrap_or(0.0);
-    if used > 1.0 && core.tasks.iter().any(|t| hard(&t)) {
+    if used > 1.0 && core.tasks.iter().any(|t| hard(t) && !t.is_met()) {
         let mut d = Diagnostic::error(
             code::OVERLOAD,
             format!("core {} of `{}` is asked for {used:.4} of its time", core.number, core.robot),
@@ -62,7 +63,7 @@ fn late(core: &Core) -> Vec<Diagnostic> {
     }
     let mut out = Vec::new();
     for (i, t) in core.tasks.iter().enumerate() {
-        if t.is_met() || !hard(&t) {
+        if t.is_met() || !hard(t) {
             continue;
         }
         let (Some(deadline), title) = (t.deadline, format!("`{}` can miss its deadline", t.unit)) else {

@@ -1,6 +1,8 @@
 //! The runtime from the outside: missions written in the language, on a scripted platform.
 
 mod arbitration;
+mod conversations;
+mod cores;
 mod determinism;
 mod expectations;
 mod faults;

@@ -111,9 +111,9 @@ struct Eye {
 impl World {
     pub fn new(scene: &Scene) -> Self {
         let body = |r: &RobotScene| Body { pose: r.start, velocity: [0.0; 2], stride: [0.0; 3], path: 0.0 };
-        let bodies = scene.robots.iter().map(body);
+        let bodies = scene.bodies().iter().map(body);
         let mut sensors = Vec::new();
-        for (r, robot) in scene.robots.iter().enumerate() {
+        for (r, robot) in scene.bodies().iter().enumerate() {
             for (s, part) in scene.platforms[robot.platform as usize].of_role("sensor").enumerate() {
                 if robot.consumed[s] {
                     let period = part
