@@ -73,7 +73,9 @@ impl Reach {
 
     fn stmt(&mut self, s: &Stmt) {
         match &s.kind {
-            StmtKind::Let(_, e) | StmtKind::Set(_, e) | StmtKind::SetParam(_, e) => self.expr(e),
+            StmtKind::Let(_, e) | StmtKind::Set(_, e) | StmtKind::Use(_, e) | StmtKind::SetParam(_, e) => {
+                self.expr(e)
+            }
             StmtKind::Command(port, e) => {
                 self.commands.insert(*port);
                 self.expr(e);

@@ -23,6 +23,9 @@ pub struct Agent {
     pub states: Vec<State>,
     /// Events its units raise and wait for.
     pub events: Vec<Name>,
+    /// What its units use one after the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub devices: Vec<Device>,
     /// Services, machines and plans, in declaration order.
     pub units: Vec<Unit>,
     /// One for each actuator that several units command.
@@ -53,6 +56,17 @@ pub struct Port {
     /// is skipped while the reading is absent or expired.
     #[serde(default)]
     pub optional: bool,
+    /// Where it was written.
+    pub span: Span,
+}
+
+/// Something that serves so many uses at a time; others wait, first come, first served.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Device {
+    /// Name.
+    pub name: Name,
+    /// How many uses at a time.
+    pub capacity: u32,
     /// Where it was written.
     pub span: Span,
 }
@@ -282,6 +296,8 @@ pub enum StmtKind {
     Each(Box<Each>),
     /// Improves a value round by round while the budget of the unit lasts; directly in a service only.
     Refine(Box<Refine>),
+    /// Uses a device for a duration; what follows is sent when that is over.
+    Use(u32, Expr),
     /// Raises an event of the agent.
     Raise(u32),
     /// Sets a mission parameter.

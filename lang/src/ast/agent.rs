@@ -29,6 +29,8 @@ pub enum AgentMember {
     State(Ident, Option<TypeRef>, Expr),
     /// `event`
     Event(Ident),
+    /// `device`, with its capacity
+    Device(Ident, i64),
     /// `let`
     Constant(Constant),
     /// `action`

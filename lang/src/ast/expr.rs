@@ -41,6 +41,8 @@ pub enum StmtKind {
         /// Which; the one at hand when absent.
         thread: Option<Expr>,
     },
+    /// `use device for duration`
+    Use(Ident, Expr),
     /// `for item in list { … }`
     For(Ident, Expr, Vec<Stmt>),
     /// `refine name = first by step cost c until u`

@@ -91,6 +91,7 @@ impl Costs<'_> {
             | StmtKind::Set(_, e)
             | StmtKind::Command(_, e)
             | StmtKind::Publish(_, e)
+            | StmtKind::Use(_, e)
             | StmtKind::SetParam(_, e) => self.expr(e),
             StmtKind::Open(o) => o
                 .content

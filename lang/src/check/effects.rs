@@ -14,6 +14,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
                 s.kind,
                 StmtKind::Let(..)
                     | StmtKind::Refine(_)
+                    | StmtKind::Use(..)
                     | StmtKind::Each(_)
                     | StmtKind::If(..)
                     | StmtKind::IfSome { .. }

@@ -312,6 +312,7 @@ impl<'a> Types<'a> {
                 self.want(&r.step, &r.first.ty);
                 (self.locals.get(r.local as usize).cloned(), &r.first)
             }
+            StmtKind::Use(i, e) => (a.devices.get(*i as usize).map(|_| Type::Quantity(Dim::TIME)), e),
             StmtKind::Raise(i) if *i as usize >= a.events.len() => return self.bad(s.at, "no such event"),
             _ => return,
         };

@@ -130,6 +130,7 @@ fn expressions_of<'a>(s: &'a Stmt, visit: &mut dyn FnMut(&'a Expr)) {
         | StmtKind::Set(_, e)
         | StmtKind::Command(_, e)
         | StmtKind::Publish(_, e)
+        | StmtKind::Use(_, e)
         | StmtKind::SetParam(_, e) => e.walk(visit),
         StmtKind::Open(o) => o.content.iter().chain([&o.to]).chain(&o.within).for_each(|e| e.walk(visit)),
         StmtKind::Reply(r) => r.content.iter().chain([&r.thread]).for_each(|e| e.walk(visit)),

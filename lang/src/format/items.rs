@@ -56,6 +56,7 @@ impl Builder<'_, '_> {
             | Rule::metric
             | Rule::test_set
             | Rule::let_stmt
+            | Rule::use_stmt
             | Rule::set_stmt
             | Rule::command_stmt
             | Rule::publish_stmt

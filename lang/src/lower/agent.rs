@@ -5,7 +5,7 @@ use crate::{
     code,
     typed::{AgentScope, Body, Checker, Place},
 };
-use soifra_graph::{Agent as GAgent, Diagnostic, Expr, Name, Offer, Port, State, Type};
+use soifra_graph::{Agent as GAgent, Device, Diagnostic, Expr, Name, Offer, Port, State, Type};
 
 impl<'a> Checker<'a> {
     /// Lowers an agent; parts with errors are left out.
@@ -19,6 +19,7 @@ impl<'a> Checker<'a> {
             actuators: Vec::new(),
             states: Vec::new(),
             events: Vec::new(),
+            devices: Vec::new(),
             units: Vec::new(),
             arbiters: Vec::new(),
             span: a.name.span,
@@ -94,6 +95,9 @@ impl<'a> Checker<'a> {
         self.distinct(
             a.members.iter().filter_map(|m| if let AgentMember::Event(n) = m { Some(n) } else { None }),
         );
+        self.distinct(
+            a.members.iter().filter_map(|m| if let AgentMember::Device(n, _) = m { Some(n) } else { None }),
+        );
     }
 
     fn ports(&mut self, a: &Agent, out: &mut GAgent) {
@@ -118,6 +122,19 @@ impl<'a> Checker<'a> {
                     };
                     self.agent.actuators.push((n.name.clone(), ty.clone()));
                     out.actuators.push(Port { name: n.name.clone(), ty, optional: false, span: n.span });
+                }
+                AgentMember::Device(n, capacity) => {
+                    let Some(capacity) = u32::try_from(*capacity).ok().filter(|c| (1..=1024).contains(c))
+                    else {
+                        self.report(
+                            Diagnostic::error(code::RANGE, "a capacity out of range")
+                                .at(n.span, "1 to 1024 are possible")
+                                .hint("how many can use it at a time?"),
+                        );
+                        continue;
+                    };
+                    self.agent.devices.push(n.name.clone());
+                    out.devices.push(Device { name: n.name.clone(), capacity, span: n.span });
                 }
                 AgentMember::Event(n) => {
                     self.agent.events.push(n.name.clone());

@@ -36,6 +36,12 @@ impl Builder {
                     let ty = c.take(Rule::type_ref).map(|t| self.type_ref(t));
                     AgentMember::State(name, ty, self.expr_in(&mut c))
                 }
+                Rule::device => {
+                    let mut c = Cursor::new(p);
+                    let name = self.ident(&mut c);
+                    let capacity = if c.peek() == Some(Rule::int) { self.int(&mut c) } else { 1 };
+                    AgentMember::Device(name, capacity)
+                }
                 Rule::event => AgentMember::Event(self.ident(&mut Cursor::new(p))),
                 Rule::constant => AgentMember::Constant(self.constant(p)),
                 Rule::action => AgentMember::Action(self.action(p)),
@@ -348,6 +354,7 @@ impl Builder {
                 let thread = c.take(Rule::reply_in).map(|p| self.expr_in(&mut Cursor::new(p)));
                 StmtKind::Reply { performative, content, reason, thread }
             }
+            Rule::use_stmt => StmtKind::Use(self.ident(&mut c), self.expr_in(&mut c)),
             Rule::for_stmt => {
                 let (item, list) = (self.ident(&mut c), self.expr_in(&mut c));
                 StmtKind::For(item, list, self.block_in(&mut c))

@@ -119,6 +119,9 @@ fn is_aside(rule: Rule) -> bool {
             | Rule::K_FROM
             | Rule::K_DEADLINE
             | Rule::K_WORST
+            | Rule::K_DEVICE
+            | Rule::K_CAPACITY
+            | Rule::K_USE
             | Rule::K_PROTOCOL
             | Rule::K_CONVERSATION
             | Rule::K_OPEN

@@ -51,6 +51,8 @@ pub struct AgentScope<'a> {
     pub actuators: Vec<(Name, Type)>,
     /// Events.
     pub events: Vec<Name>,
+    /// Devices.
+    pub devices: Vec<Name>,
     /// Agent-level `let`s.
     pub lets: BTreeMap<Name, &'a ast::Constant>,
     /// Actions.

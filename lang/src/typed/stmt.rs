@@ -150,6 +150,17 @@ impl<'a> Checker<'a> {
                 };
                 GStmtKind::Note(text.clone(), value)
             }
+            StmtKind::Use(device, time) => {
+                let Some(i) = self.agent.devices.iter().position(|d| *d == device.name) else {
+                    let names = self.agent.devices.clone();
+                    let known = names.iter().map(|n| &**n);
+                    let d = unknown(code::UNKNOWN_NAME, "device", &device.name, device.span, known);
+                    self.report(d);
+                    return None;
+                };
+                let time = self.typed(time, &Type::Quantity(soifra_graph::Dim::TIME))?;
+                GStmtKind::Use(i as u32, time)
+            }
             StmtKind::Raise(event) => {
                 let Some(i) = self.agent.events.iter().position(|e| *e == event.name) else {
                     let names = self.agent.events.clone();

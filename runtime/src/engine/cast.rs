@@ -34,6 +34,8 @@ pub(crate) struct Instance {
     pub nodes: usize,
     /// First sub-goal.
     pub subgoals: usize,
+    /// First device.
+    pub devices: u32,
     /// Random stream.
     pub stream: u64,
 }
@@ -80,6 +82,13 @@ pub(crate) struct Work {
 /// Rank on a core; the least goes first.
 pub(crate) type Rank = (std::cmp::Reverse<i64>, u32);
 
+/// A device of an agent.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct DeviceInfo {
+    pub instance: u32,
+    pub capacity: u32,
+}
+
 /// A virtual core.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CoreInfo {
@@ -106,6 +115,7 @@ pub(crate) struct Cast {
     pub units: Vec<UnitInfo>,
     pub arguments: Vec<f64>,
     pub timers: Vec<Timer>,
+    pub devices: Vec<DeviceInfo>,
     pub works: Vec<Work>,
     pub cores: Vec<CoreInfo>,
     /// Initial states.
@@ -165,6 +175,7 @@ impl Cast {
                     units: cast.units.len() as u32,
                     nodes: cast.nodes,
                     subgoals: cast.subgoals,
+                    devices: cast.devices.len() as u32,
                     stream: stream_id(&format!("agent/{name}")),
                 };
                 for block in &binding.arguments {
@@ -199,6 +210,9 @@ impl Cast {
                 }
                 cast.nodes += agent.nodes;
                 cast.subgoals += agent.subgoals.len();
+                for d in &mission.graph.agents[binding.agent as usize].devices {
+                    cast.devices.push(DeviceInfo { instance: number, capacity: d.capacity });
+                }
                 cast.instances.push(instance);
             }
         }

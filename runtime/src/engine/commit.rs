@@ -72,7 +72,7 @@ impl Engine<'_> {
             self.missed(release.unit, release.release, release.release + info.deadline, record);
         }
         if taken == Time::ZERO {
-            items.iter().for_each(|item| self.apply(release.unit, item, log, record));
+            self.apply_all(release.unit, items, log, record);
             return;
         }
         let later = self.apply_inner(release.unit, items, log, record);
@@ -103,7 +103,7 @@ impl Engine<'_> {
                 let robot = self.cast.instances[info.instance as usize].robot;
                 self.fault(Some(robot), &agent, &fault, release.cause);
             }
-            None => items.iter().for_each(|item| self.apply(release.unit, item, log, release.cause)),
+            None => self.apply_all(release.unit, items, log, release.cause),
         }
     }
 
@@ -426,7 +426,7 @@ fn brief(code: &str) -> String {
 }
 
 /// Copies an output into a log of its own.
-fn put_off(item: &Item, from: &Log, to: &mut Log) {
+pub(super) fn put_off(item: &Item, from: &Log, to: &mut Log) {
     let mut item = item.clone();
     match &mut item {
         Item::Command { registers, .. }

@@ -304,9 +304,7 @@ impl Engine<'_> {
             start: job.started.unwrap_or(self.now),
             rounds,
         });
-        for item in &job.log.items {
-            self.apply(unit, item, &job.log, record);
-        }
+        self.apply_all(unit, &job.log.items, &job.log, record);
         if let Some(a) = job.anytime {
             self.releases.push(Release {
                 unit,

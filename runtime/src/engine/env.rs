@@ -154,6 +154,7 @@ impl Env for AgentEnv<'_, '_> {
                 let registers = log.keep(registers);
                 log.items.push(Item::Tell(Box::new(Told { performative, to, content, registers })));
             }
+            Effect::Use { device, seconds } => log.items.push(Item::Use { device, seconds }),
             Effect::Open { conversation, performative, registers, to, within } => {
                 let (registers, to) = (log.keep(registers), log.keep(to));
                 let performative = performative.into();

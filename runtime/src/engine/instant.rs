@@ -189,9 +189,7 @@ impl Engine<'_> {
         while let Some(what) = self.queue.take(now) {
             match what {
                 Scheduled::Outputs { unit, record, log } => {
-                    for item in &log.items {
-                        self.apply(unit, item, &log, record);
-                    }
+                    self.apply_all(unit, &log.items, &log, record);
                 }
                 Scheduled::Deliver { letter, to } => {
                     for unit in to {
@@ -200,6 +198,7 @@ impl Engine<'_> {
                         mailboxes.push(unit);
                     }
                 }
+                Scheduled::DeviceFree { device, by } => self.device_free(device, by),
                 Scheduled::Utter(u) => self.hear(u),
                 Scheduled::Patience { branch, by, entry } => self.patience(branch, by, entry),
                 Scheduled::Late { unit, release } => self.admit_since(unit, release, None),

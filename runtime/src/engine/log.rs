@@ -18,6 +18,10 @@ pub(crate) enum Item {
     },
     Tell(Box<Told>),
     Raise(u32),
+    Use {
+        device: u32,
+        seconds: f64,
+    },
     Open(Box<Opened>),
     Reply(Box<Replied>),
     SetParam {
@@ -137,6 +141,7 @@ impl Item {
                 | Item::Publish { .. }
                 | Item::Tell(_)
                 | Item::Raise(_)
+                | Item::Use { .. }
                 | Item::Open(_)
                 | Item::Reply(_)
                 | Item::SetParam { .. }

@@ -15,6 +15,7 @@ mod cast;
 mod commit;
 mod contacts;
 mod cores;
+mod devices;
 mod directory;
 mod env;
 mod finish;
@@ -45,6 +46,7 @@ use cast::Cast;
 pub use cast::DEFAULT_LIFETIME;
 use contacts::Contacts;
 use cores::{CoreState, Tally};
+use devices::DeviceState;
 use directory::Directory;
 use goals::Goals;
 use judge::Judge;
@@ -95,6 +97,7 @@ pub struct Engine<'m> {
     cores: Vec<CoreState>,
     /// Cores that something happened to.
     touched: Vec<u32>,
+    devices: Vec<DeviceState>,
     senses: Senses,
     boards: Vec<Board>,
     mail: Mail,

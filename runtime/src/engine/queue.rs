@@ -2,6 +2,7 @@
 
 use super::{
     cast::Timer,
+    devices::DeviceUse,
     log::{Item, Log},
     post::Letter,
     talks::Utterance,
@@ -22,6 +23,8 @@ pub(crate) enum Scheduled {
     Deliver { letter: Arc<Letter>, to: Vec<u32> },
     /// Outputs of an activation that took its time.
     Outputs { unit: u32, record: Option<u64>, log: Log },
+    /// A use of a device is over.
+    DeviceFree { device: u32, by: DeviceUse },
     /// A message of a conversation arrives.
     Utter(Utterance),
     /// A side of a conversation has waited long enough.
@@ -81,6 +84,7 @@ impl Queue {
                         | Scheduled::Late { unit, .. }
                         | Scheduled::Deadline { unit, .. } => known(unit),
                         Scheduled::Utter(_) | Scheduled::Patience { .. } => true,
+                        Scheduled::DeviceFree { by, .. } => by.fits(units),
                         Scheduled::Core { core, .. } => (*core as usize) < cores,
                     }
             });

@@ -7,6 +7,7 @@ use super::{
     board::Kept,
     contacts::Contacts,
     cores::{CoreState, Tally},
+    devices::DeviceState,
     directory::Directory,
     goals::Goals,
     minds::Minds,
@@ -33,6 +34,7 @@ pub struct Snapshot {
     clocks: Vec<Clock>,
     tallies: Vec<Tally>,
     cores: Vec<CoreState>,
+    devices: Vec<DeviceState>,
     senses: Senses,
     boards: Vec<Kept>,
     mail: Mail,
@@ -79,6 +81,7 @@ impl Engine<'_> {
                 clocks: self.clocks.clone(),
                 tallies: self.tallies.clone(),
                 cores: self.cores.clone(),
+                devices: self.devices.clone(),
                 senses: self.senses.clone(),
                 boards: self.boards.iter().map(|b| b.kept()).collect(),
                 mail: self.mail.clone(),
@@ -110,6 +113,8 @@ impl Engine<'_> {
             && s.tallies.len() == self.tallies.len()
             && s.cores.len() == self.cores.len()
             && s.cores.iter().all(|c| c.fits(units))
+            && s.devices.len() == self.devices.len()
+            && s.devices.iter().all(|d| d.fits(units))
             && s.senses.fits(&self.senses)
             && s.boards.len() == self.boards.len()
             && s.mail.fits(units)
@@ -129,6 +134,7 @@ impl Engine<'_> {
         (self.now, self.polled) = (s.t, s.polled);
         (self.params, self.minds, self.subgoals, self.clocks) = (s.params, s.minds, s.subgoals, s.clocks);
         (self.tallies, self.cores) = (s.tallies, s.cores);
+        self.devices = s.devices;
         (self.talks, self.directory) = (s.talks, s.directory);
         (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);

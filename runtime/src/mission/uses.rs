@@ -56,7 +56,10 @@ impl Uses {
     pub(crate) fn stmts(&mut self, stmts: &[Stmt]) {
         for s in stmts {
             match &s.kind {
-                StmtKind::Let(_, e) | StmtKind::Set(_, e) | StmtKind::SetParam(_, e) => self.expr(e),
+                StmtKind::Let(_, e)
+                | StmtKind::Set(_, e)
+                | StmtKind::Use(_, e)
+                | StmtKind::SetParam(_, e) => self.expr(e),
                 StmtKind::Command(port, e) => {
                     add(&mut self.commands, *port);
                     self.expr(e);

@@ -92,7 +92,14 @@ fn open_sides(ran: &Ran) -> usize {
 #[test]
 fn the_cheapest_gets_the_work() {
     let ran = contract_net("delay: 10 ms", "reply propose Bid(cost: cost)");
-    let won = ["20 settled: 3", "30 won: 3", "90 received: 1", "1020 settled: 3", "1030 won: 3", "1090 received: 2"];
+    let won = [
+        "20 settled: 3",
+        "30 won: 3",
+        "90 received: 1",
+        "1020 settled: 3",
+        "1030 won: 3",
+        "1090 received: 2",
+    ];
     assert_eq!(notes(&ran), won);
     assert_eq!(open_sides(&ran), 0);
     let said = ran.all(|r| match &r.event {
@@ -152,7 +159,9 @@ fn what_comes_after_the_time_is_dropped_and_everything_ends() {
     assert!(got.contains(&"100 settled: 0".to_string()));
     assert!(!got.iter().any(|n| n.contains("received")));
     let dropped = ran.all(|r| match &r.event {
-        Event::Delivery { dropped: Some(why), topic, .. } => Some(format!("{} {topic} {why}", r.t.0 / 1_000_000)),
+        Event::Delivery { dropped: Some(why), topic, .. } => {
+            Some(format!("{} {topic} {why}", r.t.0 / 1_000_000))
+        }
         _ => None,
     });
     assert_eq!(dropped[0], "160 propose the conversation is over");
@@ -187,7 +196,10 @@ fn what_is_out_of_order_is_not_said() {
         }
         _ => None,
     });
-    assert_eq!(unsaid[0], "courier@one propose not sent: the participant does not say that in state proposed");
+    assert_eq!(
+        unsaid[0],
+        "courier@one propose not sent: the participant does not say that in state proposed"
+    );
     assert_eq!(unsaid[1], "courier@one inform not sent: the participant does not say that in state proposed");
     assert_eq!(notes(&ran)[..3], ["20 settled: 3", "30 won: 3", "90 received: 1"]);
 }

@@ -24,7 +24,9 @@ mission m {{
 /// When each unit got a core, as `time unit`.
 fn switches(ran: &Ran) -> Vec<String> {
     ran.all(|r| match &r.event {
-        Event::Switch { unit, .. } => Some(format!("{} {}", r.t.0 / 1_000_000, unit.as_deref().unwrap_or("-"))),
+        Event::Switch { unit, .. } => {
+            Some(format!("{} {}", r.t.0 / 1_000_000, unit.as_deref().unwrap_or("-")))
+        }
         _ => None,
     })
 }

@@ -235,6 +235,7 @@ pub(super) enum EffectCode {
         content: Name,
         n: u32,
     },
+    Use(u32),
     /// Registers: content, then the agents, then the time to wait.
     Open {
         conversation: u32,

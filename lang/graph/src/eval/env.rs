@@ -109,6 +109,13 @@ pub enum Effect<'a> {
         /// The content.
         registers: &'a [f64],
     },
+    /// A device of the agent is used for so many seconds.
+    Use {
+        /// Device.
+        device: u32,
+        /// How long.
+        seconds: f64,
+    },
     /// A conversation is opened.
     Open {
         /// Conversation.

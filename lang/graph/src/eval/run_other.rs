@@ -300,6 +300,7 @@ impl Program {
             EffectCode::Tell { performative, to, content, n } => {
                 Effect::Tell { performative, to, content, registers: value(*n)? }
             }
+            EffectCode::Use(device) => Effect::Use { device: *device, seconds: get(r, 0)? },
             EffectCode::Open { conversation, performative, n, to, within } => {
                 let (from, capacity) = match to {
                     Recipients::One => (*n, 0),

@@ -96,6 +96,7 @@ pub enum Done {
     Note(String, Option<(Type, Vec<f64>)>),
     Open(u32, String, Vec<f64>, Vec<f64>, Option<f64>),
     Reply(u32, String, Option<String>, Vec<f64>, f64),
+    Use(u32, f64),
     Raise(u32),
     SetParam(u32, Vec<f64>),
     Rule(u32),
@@ -217,6 +218,7 @@ impl Env for World {
                 let reason = reason.map(str::to_string);
                 Done::Reply(conversation, performative.into(), reason, registers.to_vec(), thread)
             }
+            Effect::Use { device, seconds } => Done::Use(device, seconds),
             Effect::Raise(event) => Done::Raise(event),
             Effect::SetParam { param, registers } => Done::SetParam(param, registers.to_vec()),
             Effect::RuleFired { rule, .. } => Done::Rule(rule),
@@ -301,6 +303,7 @@ pub fn graph() -> Graph {
             state("beacon", beacon()),
         ],
         events: vec!["go".into(), "stop".into()],
+        devices: vec![],
         units: vec![],
         arbiters: vec![],
         span: at(0),

@@ -146,6 +146,7 @@ pub(super) struct AgentView<'g> {
     pub sensors: &'g [Port],
     pub actuators: &'g [Port],
     pub events: usize,
+    pub devices: u32,
 }
 
 /// Compiles expressions and statements into one [`Program`].
@@ -225,6 +226,7 @@ impl<'g> Compiler<'g> {
                 sensors: &agent.sensors,
                 actuators: &agent.actuators,
                 events: agent.events.len(),
+                devices: agent.devices.len() as u32,
             });
         }
         Ok(())

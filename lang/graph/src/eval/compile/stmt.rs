@@ -17,6 +17,7 @@ pub(super) fn walk<'s>(stmts: &'s [Stmt], visit: &mut dyn FnMut(&'s Expr)) {
             | StmtKind::Publish(_, e)
             | StmtKind::Tell { content: e, .. }
             | StmtKind::Note(_, Some(e))
+            | StmtKind::Use(_, e)
             | StmtKind::SetParam(_, e) => e.walk(visit),
             StmtKind::Open(o) => {
                 o.content.iter().chain([&o.to]).chain(&o.within).for_each(|e| e.walk(visit));
@@ -94,6 +95,7 @@ impl Compiler<'_> {
             StmtKind::Each(each) => self.gen_each(&each.list, each.local, &each.body)?,
             StmtKind::Set(..)
             | StmtKind::Open(_)
+            | StmtKind::Use(..)
             | StmtKind::Reply(_)
             | StmtKind::Command(..)
             | StmtKind::Publish(..)
@@ -346,6 +348,11 @@ impl Compiler<'_> {
                 let (performative, to, content) = (performative.clone(), to.clone(), name.clone());
                 (EffectCode::Tell { performative, to, content, n }, a)
             }
+            StmtKind::Use(i, e) if *i < agent.devices && e.ty == Type::Quantity(crate::Dim::TIME) => {
+                let (a, _) = self.effect_value(e, &e.ty)?;
+                (EffectCode::Use(*i), a)
+            }
+            StmtKind::Use(..) => return error(s.at, "the agent has no such device, or not for this"),
             StmtKind::Open(o) => self.open_effect(o)?,
             StmtKind::Reply(r) => self.reply_effect(r)?,
             StmtKind::Note(text, None) => (EffectCode::Note { text: text.clone(), value: None }, 0),
