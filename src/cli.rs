@@ -34,7 +34,7 @@ enum Command {
     Test(commands::test::Arguments),
     /// Run the studies of a file and write their tables
     Measure(commands::measure::Arguments),
-    /// Draw the top view of a trace
+    /// Draw a trace: the top view, the messages, or the schedule
     Plot(commands::plot::Arguments),
     /// Execute a trace again and verify that nothing differs
     Replay(commands::replay::Arguments),

@@ -153,6 +153,11 @@ pub const PAGES: &[Page] = &[
         "A file of studies for `soifra measure` is a YAML list; the report gives the path to what is wrong in it. Fields of a study: `name`, `title`, `mission`, `seeds`, `sample`, `set`, `platforms`, `text`, `bars`. Fields of a bar: `metric`, `label`, `published`, `scale`, `of` (`mean`, `median`, `min`, `max`), `at_most`, `at_least`, `full_only`.",
     ),
     page(
+        "S9027",
+        "The trace knows nothing of that name",
+        "`soifra plot --agent` takes an agent of every robot (`courier`) or of one (`courier@r1`), `--conversation` the identifier of a conversation or its beginning. Nothing in the trace tells of such a one; the report names the nearest, or what there is.",
+    ),
+    page(
         "S9999",
         "A defect of soifra",
         "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files.",

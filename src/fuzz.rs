@@ -1,7 +1,7 @@
 //! Fuzz bodies: plain functions that take any bytes and must neither panic nor hang. The test suite
 //! runs them over a corpus; `fuzz/` wraps them for cargo-fuzz.
 
-use crate::{graph_file, trace_file};
+use crate::{graph_file, plot, trace_file};
 use soifra_graph::{Diagnostic, Graph, Severity};
 use soifra_lang::CheckOptions;
 use soifra_runtime::{Mission, Settings};
@@ -61,9 +61,14 @@ pub fn fuzz_graph(data: &[u8]) {
 /// Reads a trace, whole or damaged, and draws what can be read.
 pub fn fuzz_trace(data: &[u8]) {
     if let Ok(trace) = trace_file::Reader::new(Cursor::new(data)).and_then(trace_file::Reader::into_trace) {
-        let picture = crate::plot::top_view(&trace);
-        assert!(!picture.to_svg().contains("NaN"), "a picture has places that are no numbers");
-        let _ = picture.to_png(60);
+        let all = plot::Selection::default();
+        let chart = plot::Sequence::of(&trace, &all, 100);
+        chart.mermaid();
+        for picture in [plot::top_view(&trace), chart.drawing(), plot::Gantt::of(&trace, &all, 100).drawing()]
+        {
+            assert!(!picture.to_svg().contains("NaN"), "a picture has places that are no numbers");
+            let _ = picture.to_png(60);
+        }
     }
 }
 

@@ -16,6 +16,7 @@ pub mod graph_file;
 pub mod graph_view;
 pub mod interrupt;
 mod last_resort;
+mod mermaid;
 pub mod output;
 pub mod plot;
 pub mod relative;

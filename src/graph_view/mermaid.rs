@@ -1,11 +1,12 @@
 //! A Mermaid flowchart.
 
 use super::model::{Inside, Kind, View};
+use crate::mermaid::{escape, title};
 use std::fmt::Write;
 
 /// The flowchart's text.
 pub fn draw(view: &View) -> String {
-    let mut s = format!("---\ntitle: {}\n---\nflowchart LR\n", quote(&view.title));
+    let mut s = title(&view.title) + "flowchart LR\n";
     for t in &view.things {
         let label = quote(&t.lines.join("\n"));
         let (open, close) = match t.kind {
@@ -50,21 +51,6 @@ fn edge_label(label: &str) -> String {
     if label.is_empty() { String::new() } else { format!("|{}|", quote(label)) }
 }
 
-/// Quoted, with what Mermaid would read as markup written as entities.
 fn quote(text: &str) -> String {
-    let mut out = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' => out.push_str("#quot;"),
-            '<' => out.push_str("#lt;"),
-            '>' => out.push_str("#gt;"),
-            '#' => out.push_str("#35;"),
-            '&' => out.push_str("#amp;"),
-            '\n' => out.push_str("<br/>"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
+    format!("\"{}\"", escape(text))
 }

@@ -132,6 +132,8 @@ const GLYPHS: &[(char, f64, &str)] = &[
     ('−', 8.0, "M0 5.5L8 5.5"),
     ('≤', 7.0, "M7 11.4L0 7.4L7 3.4M0 0.4L7 0.4"),
     ('≥', 7.0, "M0 11.4L7 7.4L0 3.4M0 0.4L7 0.4"),
+    ('▪', 6.0, "M0 2.4L6 2.4L6 8.4L0 8.4L0 2.4M1.5 4L4.5 4M1.5 5.4L4.5 5.4M1.5 6.8L4.5 6.8"),
+    ('▸', 6.4, "M0 0.8L6.4 5.4L0 10L0 0.8M1.4 3.6L1.4 7.2M2.8 4.6L2.8 6.2"),
 ];
 
 /// Letters with a mark: the letters, what they are without it, the mark (in the middle of small letters,

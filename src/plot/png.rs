@@ -21,7 +21,19 @@ impl fmt::Display for PngError {
 
 impl std::error::Error for PngError {}
 
+/// Points of a drawing that share a pixel at most, where a text can still be read.
+const LEGIBLE: f64 = 1.4;
+
 impl Drawing {
+    /// A width in pixels for a PNG that should have `wanted`: less for a drawing so tall that it would not fit,
+    /// more for one so wide that its texts could not be read.
+    pub fn png_width(&self, wanted: u32) -> u32 {
+        let most = f64::from(MAX_PIXELS);
+        let scale = f64::from(wanted).max(self.width / LEGIBLE) / self.width;
+        let scale = scale.min(most / self.width).min((most - 1.0) / self.height);
+        (self.width * scale.max(1.0 / LEGIBLE)).clamp(1.0, 1e9) as u32
+    }
+
     /// The drawing as a PNG file of a width in pixels.
     pub fn to_png(&self, width: u32) -> Result<Vec<u8>, PngError> {
         let scale = f64::from(width) / self.width;

@@ -5,6 +5,7 @@ mod check;
 mod documents;
 mod fmt;
 mod graph;
+mod plot;
 mod run;
 mod sweep;
 mod test;

@@ -1,4 +1,4 @@
-//! `run`, `replay` and `plot`.
+//! `run` and `replay`.
 
 use super::{MISSION, mission};
 use crate::support::{code, command, file, folder, json, soifra, stderr, stdout};
@@ -185,18 +185,6 @@ fn a_value_given_twice_is_swept_once() {
     let set = "speed=0.5m/s,1m/s,0.5m/s";
     let o = soifra(&["sweep", &mission(&dir), "--seeds", "2", "--set", set, "--format", "json"]);
     assert_eq!(json(&o)["runs"].as_array().map(Vec::len), Some(4), "{}", stderr(&o));
-}
-
-#[test]
-fn plots_are_pictures() {
-    let dir = folder("run_plot");
-    let path = dir.join("a.mcap").to_string_lossy().into_owned();
-    assert_eq!(code(&soifra(&["run", &mission(&dir), "--trace", &path])), 0);
-    let o = soifra(&["plot", &path]);
-    assert_eq!(code(&o), 0, "{}", stderr(&o));
-    assert!(std::fs::read_to_string(dir.join("a.svg")).unwrap().starts_with("<svg"));
-    assert!(std::fs::read(dir.join("a.png")).unwrap().starts_with(b"\x89PNG"));
-    assert_eq!(code(&soifra(&["plot", &path, "-o", "a.jpeg"])), 2);
 }
 
 #[test]

@@ -2,7 +2,10 @@
 
 mod file;
 mod fuzz;
+mod gantt;
 mod plot;
 mod sample;
+mod sequence;
 mod snapshots;
 mod viewers;
+mod well_formed;

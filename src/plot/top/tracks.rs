@@ -1,7 +1,7 @@
-//! What of a trace is in the picture: where everything was, what touched, how it ended.
+//! What of a trace is in the top view: where everything was, what touched, how it ended.
 
 use super::view::in_sight;
-use crate::trace_file::shape;
+use crate::{plot::page::Ending, trace_file::shape};
 use soifra_runtime::{Event, Record, Time};
 use std::collections::BTreeMap;
 
@@ -14,10 +14,7 @@ pub(super) struct Tracks {
     pub movers: BTreeMap<String, Track>,
     /// When and which robot touched something.
     pub contacts: Vec<(Time, usize)>,
-    /// Outcome and reason.
-    pub outcome: Option<(String, String)>,
-    /// Time of the last record.
-    pub last: Time,
+    pub ending: Ending,
 }
 
 /// Where a body was, each place once.
@@ -32,7 +29,7 @@ pub(super) struct Track {
 impl Tracks {
     /// Takes the next record.
     pub(super) fn take(&mut self, record: &Record) {
-        self.last = record.t;
+        self.ending.take(record);
         match &record.event {
             Event::Pose { robot, pose, .. } => {
                 self.robots.entry(*robot as usize).or_default().take(record.t, pose)
@@ -42,7 +39,6 @@ impl Tracks {
                 None => self.movers.entry(name.clone()).or_default().take(record.t, pose),
             },
             Event::Contact { robot, begin: true, .. } => self.contacts.push((record.t, *robot as usize)),
-            Event::End { outcome, reason } => self.outcome = Some((outcome.clone(), reason.clone())),
             _ => {}
         }
     }

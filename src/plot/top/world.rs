@@ -1,23 +1,21 @@
-//! What is in the picture: the world, the robots, the movers, the contacts.
+//! What is in the top view: the world, the robots, the movers, the contacts.
 
-use super::{
-    Scene,
-    drawing::{Color, Drawing, Style, faint, filled, ink, stroked},
-    frame::{DARK, MILD},
-    tracks::simplify,
-    view::in_sight,
-};
-use crate::trace_file::{
-    Header, palette,
-    shape::{self, Shape},
+use super::{Scene, tracks::simplify, view::in_sight};
+use crate::{
+    plot::{
+        drawing::{Color, Drawing, Style, faint, filled, ink, stroked},
+        page::{DARK, MILD, RED, WHITE},
+    },
+    trace_file::{
+        Header, palette,
+        shape::{self, Shape},
+    },
 };
 
 const WALL: Color = [62, 67, 77];
 const OBSTACLE: Color = [168, 175, 186];
 const REGION: Color = [46, 160, 87];
 const MOVER: Color = [140, 148, 160];
-const CONTACT: Color = [214, 18, 32];
-const WHITE: Color = [255, 255, 255];
 const OUTSIDE: Color = [240, 242, 245];
 
 /// Paths are drawn to a fifth of a point.
@@ -195,7 +193,7 @@ pub(super) fn contacts(drawing: &mut Drawing, scene: &Scene) {
 /// A red cross in a ring.
 pub(super) fn contact(drawing: &mut Drawing, [x, y]: [f64; 2]) {
     let r = 4.2;
-    for style in [stroked(WHITE, 4.6), stroked(CONTACT, 2.2)] {
+    for style in [stroked(WHITE, 4.6), stroked(RED, 2.2)] {
         drawing.circle([x, y], 7.2, style);
         drawing.line(&[[x - r, y - r], [x + r, y + r]], style);
         drawing.line(&[[x - r, y + r], [x + r, y - r]], style);

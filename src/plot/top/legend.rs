@@ -2,12 +2,18 @@
 
 use super::{
     Scene,
-    drawing::{Align, Drawing, Lettering, stroked},
-    font,
-    frame::{DARK, LEFT, MILD, RIGHT, SMALL, TOP},
-    view, world,
+    frame::{LEFT, RIGHT, TOP},
+    world,
 };
-use crate::trace_file::palette;
+use crate::{
+    plot::{
+        axis,
+        drawing::{Align, Drawing, Lettering, filled, ink, stroked},
+        font,
+        page::{DARK, MILD, SMALL},
+    },
+    trace_file::palette,
+};
 
 /// Height of a row.
 const ROW: f64 = 21.0;
@@ -84,7 +90,7 @@ pub(super) fn draw(drawing: &mut Drawing, scene: &Scene) {
     for (i, robot) in robots.iter().take(named).enumerate() {
         let color = palette::robot(i);
         drawing.line(&[[left, y], [left + 24.0, y]], world::path_style(color));
-        drawing.circle([left + 12.0, y], 3.2, super::drawing::filled(super::drawing::ink(color)));
+        drawing.circle([left + 12.0, y], 3.2, filled(ink(color)));
         drawing.text(base(y), Align::Start, SMALL, false, &font::fit(&robot.name, SMALL.size, room));
         y += ROW;
     }
@@ -111,7 +117,7 @@ pub(super) fn draw(drawing: &mut Drawing, scene: &Scene) {
 /// A bar of a round length.
 fn scale_bar(drawing: &mut Drawing, scene: &Scene, [x, y]: [f64; 2]) {
     let unit = scene.view.unit();
-    let length = view::nice(60.0 / scene.view.scale / unit.metres);
+    let length = axis::nice(60.0 / scene.view.scale / unit.metres);
     let end = x + length * unit.metres * scene.view.scale;
     drawing.line(&[[x, y], [end, y]], stroked(DARK, 2.0));
     for at in [x, end] {

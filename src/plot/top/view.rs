@@ -1,5 +1,7 @@
 //! From the world to the page: what is shown, at what scale, with which axes.
 
+use crate::plot::axis::nice;
+
 /// A rectangle of the world and where it lies on the page.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
@@ -110,19 +112,12 @@ impl View {
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is not below `x`.
-pub(super) fn nice(x: f64) -> f64 {
-    let power = libm::pow(10.0, libm::floor(libm::log10(x)));
-    [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|n| *n >= x * (1.0 - 1e-9)).unwrap_or(power)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn ticks_are_round_numbers() {
-        assert_eq!([0.7, 1.0, 1.1, 3.0, 70.0].map(nice), [1.0, 1.0, 2.0, 5.0, 100.0]);
         let mut extent = Extent::NOTHING;
         extent.take([0.0, 0.0], 0.0);
         extent.take([0.25, 0.25], 0.0);
