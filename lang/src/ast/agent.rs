@@ -79,7 +79,7 @@ pub enum UnitKind {
     /// `machine`
     Machine(Vec<MachineState>),
     /// `plan [for sub-goal]`
-    Plan(Option<Ident>, PlanNode),
+    Plan(Option<Ident>, Box<PlanNode>),
 }
 
 /// A trigger.

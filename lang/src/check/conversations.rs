@@ -170,7 +170,7 @@ impl<'g> Speakers<'g> {
             }
             if offers {
                 offerers.push(Speaker { agent: a, says, hears });
-            } else if !opens && !(says.is_empty() && hears.is_empty()) {
+            } else if !(opens || says.is_empty() && hears.is_empty()) {
                 // Takes part without a part: told below.
                 openers.push(Speaker { agent: a, says, hears });
             }

@@ -78,7 +78,7 @@ impl Builder {
                         name,
                         trigger,
                         timing,
-                        kind: UnitKind::Plan(subgoal, root),
+                        kind: UnitKind::Plan(subgoal, Box::new(root)),
                     }))
                 }
                 Rule::arbiter => AgentMember::Arbiter(self.arbiter(p)),

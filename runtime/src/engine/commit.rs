@@ -174,7 +174,7 @@ impl Engine<'_> {
             }
             Item::Open(o) => {
                 let (registers, to) = (log.get(&o.registers).to_vec(), log.get(&o.to).to_vec());
-                self.open_talk(unit, o.conversation, &o.performative, &registers, &to, o.within, cause);
+                self.open_talk(unit, o, &registers, &to, cause);
             }
             Item::Reply(r) => {
                 let registers = log.get(&r.registers).to_vec();

@@ -4,7 +4,7 @@
 //! that it does not have in the receiver's state is not handed over and answered with `not_understood`. A side
 //! that waits longer than the protocol says goes where the time-out leads; what comes after that is dropped.
 
-use super::{Engine, post::Letter, queue::Scheduled};
+use super::{Engine, log::Opened, post::Letter, queue::Scheduled};
 use crate::{
     Event, Thread, Time,
     mission::code::{TalkCode, TriggerCode},
@@ -68,6 +68,17 @@ pub(crate) struct Utterance {
     pub record: u64,
 }
 
+/// What is said.
+struct Speech<'s> {
+    performative: &'s str,
+    registers: &'s [f64],
+    /// Why, in words.
+    reason: Option<&'s str>,
+    /// How long to wait for an answer, in place of what the protocol says.
+    limit: Option<Time>,
+    cause: Option<u64>,
+}
+
 impl Talks {
     /// Whether these can be conversations of a mission with so many instances and declarations.
     pub fn fits(&self, instances: usize, states: &[usize]) -> bool {
@@ -84,13 +95,12 @@ impl Engine<'_> {
     pub(super) fn open_talk(
         &mut self,
         unit: u32,
-        conversation: u32,
-        performative: &str,
+        opened: &Opened,
         registers: &[f64],
         to: &[f64],
-        within: Option<f64>,
         cause: Option<u64>,
     ) {
+        let (conversation, performative) = (opened.conversation, &*opened.performative);
         let sender = self.cast.units[unit as usize].instance;
         let Some(c) = self.mission.graph.conversations.get(conversation as usize) else { return };
         let opening = c.states.first().and_then(|s| s.move_of(Role::Initiator, performative));
@@ -122,15 +132,16 @@ impl Engine<'_> {
                     heard: [None, None],
                 },
             );
-            let limit = within.and_then(Time::from_seconds);
-            self.utter(branch, Role::Initiator, performative, target, registers, None, limit, cause);
+            let limit = opened.within.and_then(Time::from_seconds);
+            let speech = Speech { performative, registers, reason: None, limit, cause };
+            self.utter(branch, Role::Initiator, target, &speech);
         }
         if waiting > 0 {
             self.talks.groups.insert(group, Group { waiting, state: target });
         } else {
             self.talks.next += 1;
             // Nobody was asked: everybody has answered.
-            self.release_talk(sender, conversation, None, sender, 0, &TalkCode::Settled, cause);
+            self.release_talk(sender, conversation, None, sender, &TalkCode::Settled, cause);
         }
     }
 
@@ -160,7 +171,8 @@ impl Engine<'_> {
         match state.move_of(side, performative) {
             Some(m) => {
                 let target = m.target;
-                self.utter(number, side, performative, target, registers, reason, None, cause);
+                let speech = Speech { performative, registers, reason, limit: None, cause };
+                self.utter(number, side, target, &speech);
             }
             None => {
                 let why = match state.is_final() {
@@ -185,17 +197,8 @@ impl Engine<'_> {
     }
 
     /// Sends a message; the sender's copy goes on at once.
-    fn utter(
-        &mut self,
-        number: u64,
-        by: Role,
-        performative: &str,
-        target: u32,
-        registers: &[f64],
-        reason: Option<&str>,
-        limit: Option<Time>,
-        cause: Option<u64>,
-    ) {
+    fn utter(&mut self, number: u64, by: Role, target: u32, speech: &Speech<'_>) {
+        let Speech { performative, registers, reason, limit, cause } = *speech;
         let Some(b) = self.talks.branches.get_mut(&number) else { return };
         let c = &self.mission.graph.conversations[b.conversation as usize];
         b.said[by.index()] += 1;
@@ -289,7 +292,7 @@ impl Engine<'_> {
             };
             if settled {
                 self.talks.groups.remove(&group);
-                self.release_talk(me, conversation, Some(number), me, 0, &TalkCode::Settled, cause);
+                self.release_talk(me, conversation, Some(number), me, &TalkCode::Settled, cause);
             }
         }
         let over =
@@ -331,7 +334,14 @@ impl Engine<'_> {
             let answer = state.move_of(side, "not_understood").map(|m| m.target);
             self.trace_utterance(&u, me, Some(&why));
             if let (false, Some(target)) = (expected, answer) {
-                self.utter(u.branch, side, "not_understood", target, &[], Some(&why), None, Some(u.record));
+                let speech = Speech {
+                    performative: "not_understood",
+                    registers: &[],
+                    reason: Some(&why),
+                    limit: None,
+                    cause: Some(u.record),
+                };
+                self.utter(u.branch, side, target, &speech);
             }
             if state.is_final() {
                 self.ended.push(u.branch);
@@ -346,7 +356,8 @@ impl Engine<'_> {
         self.enter(u.branch, side, target, None, record);
         let what = TalkCode::Message(u.performative.as_str().into());
         let letter = (u.performative.clone(), u.registers, u.record);
-        self.deliver_talk(me, conversation, u.branch, peers[u.by.index()], &what, letter, record);
+        let envelope = [f64::from(peers[u.by.index()]), u.branch as f64];
+        self.deliver_talk(me, conversation, envelope, &what, letter, record);
     }
 
     /// A side has waited long enough.
@@ -361,7 +372,7 @@ impl Engine<'_> {
         self.enter(number, side, target, None, None);
         let me = peers[side.index()];
         let peer = peers[side.other().index()];
-        self.release_talk(me, conversation, Some(number), peer, 0, &TalkCode::Timeout, None);
+        self.release_talk(me, conversation, Some(number), peer, &TalkCode::Timeout, None);
     }
 
     fn release_talk(
@@ -370,7 +381,6 @@ impl Engine<'_> {
         conversation: u32,
         number: Option<u64>,
         peer: u32,
-        record: u64,
         what: &TalkCode,
         cause: Option<u64>,
     ) {
@@ -378,8 +388,9 @@ impl Engine<'_> {
             TalkCode::Timeout => "timeout",
             _ => "settled",
         };
-        let letter = (name.to_string(), Vec::new(), record);
-        self.deliver_talk(me, conversation, number.unwrap_or(u64::MAX >> 12), peer, what, letter, cause);
+        let letter = (name.to_string(), Vec::new(), 0);
+        let envelope = [f64::from(peer), number.unwrap_or(u64::MAX >> 12) as f64];
+        self.deliver_talk(me, conversation, envelope, what, letter, cause);
     }
 
     /// Puts a letter into the mailboxes of the units that wait for it.
@@ -387,8 +398,7 @@ impl Engine<'_> {
         &mut self,
         me: u32,
         conversation: u32,
-        number: u64,
-        peer: u32,
+        envelope: [f64; 2],
         what: &TalkCode,
         (topic, registers, record): (String, Vec<f64>, u64),
         cause: Option<u64>,
@@ -396,8 +406,7 @@ impl Engine<'_> {
         let info = self.cast.instances[me as usize];
         let units = &self.mission.agents[info.agent as usize].units;
         let capacity = self.channels[conversation as usize].capacity;
-        let envelope = Some([f64::from(peer), number as f64]);
-        let letter = Arc::new(Letter { topic, registers, record, capacity, envelope });
+        let letter = Arc::new(Letter { topic, registers, record, capacity, envelope: Some(envelope) });
         for (u, code) in units.iter().enumerate() {
             let TriggerCode::Talk { conversation: c, what: w } = &code.trigger else { continue };
             if *c == conversation && w == what {

@@ -70,20 +70,16 @@ fn notes(ran: &Ran) -> Vec<String> {
 fn open_sides(ran: &Ran) -> usize {
     let mut open: Vec<(String, String)> = Vec::new();
     for r in &ran.records {
-        match &r.event {
-            Event::Conversation { agent, conversation_id, over, .. } => {
-                let key = (agent.clone(), conversation_id.clone());
-                match over {
-                    true => {
-                        if let Some(i) = open.iter().position(|k| *k == key) {
-                            open.swap_remove(i);
-                        }
-                    }
-                    false if !agent.starts_with("dispatcher") && !open.contains(&key) => open.push(key),
-                    false => {}
+        let Event::Conversation { agent, conversation_id, over, .. } = &r.event else { continue };
+        let key = (agent.clone(), conversation_id.clone());
+        match over {
+            true => {
+                if let Some(i) = open.iter().position(|k| *k == key) {
+                    open.swap_remove(i);
                 }
             }
-            _ => {}
+            false if !agent.starts_with("dispatcher") && !open.contains(&key) => open.push(key),
+            false => {}
         }
     }
     open.len()
