@@ -326,6 +326,16 @@ impl Expr {
         types
     }
 
+    /// The same expression with something else where `given` says so.
+    pub fn replaced(&self, given: &impl Fn(&Op) -> Option<Expr>) -> Expr {
+        given(&self.op).unwrap_or_else(|| Expr {
+            args: self.args.iter().map(|a| a.replaced(given)).collect(),
+            op: self.op.clone(),
+            ty: self.ty.clone(),
+            span: self.span,
+        })
+    }
+
     /// The constant value, when this is one.
     pub fn as_const(&self) -> Option<&Value> {
         match &self.op {

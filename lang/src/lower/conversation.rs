@@ -185,18 +185,11 @@ impl<'a> Checker<'a> {
             body.bind(&ast::Ident { name: n.clone(), span: e.span }, t);
         }
         let (value, _) = self.in_body(body, |c| c.typed(e, &Type::Quantity(Dim::TIME)));
-        Some(written_out(value?, args))
+        Some(value?.replaced(&|op| match op {
+            Op::Local(i) => args.get(*i as usize).cloned(),
+            _ => None,
+        }))
     }
-}
-
-fn written_out(e: Expr, args: &[Expr]) -> Expr {
-    if let Op::Local(i) = e.op
-        && let Some(given) = args.get(i as usize)
-    {
-        return given.clone();
-    }
-    let parts = e.args.into_iter().map(|a| written_out(a, args)).collect();
-    Expr { args: parts, ..e }
 }
 
 fn role(name: &str) -> Option<Role> {

@@ -186,20 +186,13 @@ fn core(robot: &Name, number: i64, mut list: Vec<(Task, Load)>) -> Core {
 
 /// A duration for an agent with these arguments, in nanoseconds.
 fn nanoseconds(known: &mut Constants<'_>, e: &Expr, arguments: &[Expr]) -> Option<i64> {
-    let seconds = known.number(&with_arguments(e, arguments), 0)?;
+    let given = e.replaced(&|op| match op {
+        Op::Argument(i) => arguments.get(*i as usize).cloned(),
+        _ => None,
+    });
+    let seconds = known.number(&given, 0)?;
     let ns = (seconds * 1e9).round();
     (ns.is_finite() && ns.abs() < 9e18).then_some(ns as i64)
-}
-
-/// An expression with arguments written out.
-fn with_arguments(e: &Expr, arguments: &[Expr]) -> Expr {
-    if let Op::Argument(i) = e.op
-        && let Some(given) = arguments.get(i as usize)
-    {
-        return given.clone();
-    }
-    let args = e.args.iter().map(|a| with_arguments(a, arguments)).collect();
-    Expr { args, ..e.clone() }
 }
 
 /// When a sensor captures and how long its readings are under way.

@@ -9,6 +9,7 @@ mod lists;
 mod names;
 mod special;
 mod stmt;
+mod talk;
 mod types;
 
 pub use indexed::Indexed;

@@ -320,8 +320,7 @@ impl Engine<'_> {
 
     /// A unit has no job any more: what waited for that may be released.
     fn free(&mut self, unit: u32) {
-        if std::mem::take(&mut self.clocks[unit as usize].waiting) {
-            self.clocks[unit as usize].waiting = true;
+        if self.clocks[unit as usize].waiting {
             self.queue.put(self.now, Scheduled::Wake(unit));
         }
     }
@@ -338,6 +337,7 @@ impl Engine<'_> {
         let worst = self.execution_time(unit);
         let work = self.cast.units[unit as usize].work.map(|w| &self.cast.works[w as usize]);
         let cost = work.map_or(Time::ZERO, |w| w.cost);
+        let deadline = self.cast.units[unit as usize].deadline;
         let state = &mut self.cores[core as usize];
         let Some(i) = state.position(unit) else { return };
         self.touched.push(core);
@@ -352,7 +352,9 @@ impl Engine<'_> {
         job.log = log;
         job.mandatory = worst;
         job.anytime = outcome.anytime.take().map(|a| *a);
-        let rounds = job.anytime.as_ref().map_or(0, |a| i64::from(a.rounds));
+        // What begins after its deadline has no time for rounds.
+        let in_time = self.now - job.release < deadline;
+        let rounds = job.anytime.as_ref().filter(|_| in_time).map_or(0, |a| i64::from(a.rounds));
         job.need = Some(worst + Time(cost.0.saturating_mul(rounds)));
     }
 

@@ -33,6 +33,8 @@ pub(super) struct Branch {
     said: [u32; 2],
     /// The last message that reached each side.
     heard: [Option<String>; 2],
+    /// Messages that have not arrived yet.
+    under_way: u32,
 }
 
 /// What was opened with one message.
@@ -130,17 +132,17 @@ impl Engine<'_> {
                     entries: [0, 0],
                     said: [0, 0],
                     heard: [None, None],
+                    under_way: 0,
                 },
             );
             let limit = opened.within.and_then(Time::from_seconds);
             let speech = Speech { performative, registers, reason: None, limit, cause };
             self.utter(branch, Role::Initiator, target, &speech);
         }
-        if waiting > 0 {
+        if waiting > 0 && !c.states[target as usize].is_final() {
             self.talks.groups.insert(group, Group { waiting, state: target });
         } else {
-            self.talks.next += 1;
-            // Nobody was asked: everybody has answered.
+            // Nobody was asked, or for nothing: everybody has answered.
             self.release_talk(sender, conversation, None, sender, &TalkCode::Settled, cause);
         }
     }
@@ -253,7 +255,11 @@ impl Engine<'_> {
         };
         if lost {
             self.trace_utterance(&utterance, to, Some("lost on the way"));
+            self.ended.push(number);
         } else {
+            if let Some(b) = self.talks.branches.get_mut(&number) {
+                b.under_way += 1;
+            }
             self.queue.put(self.now + delay, Scheduled::Utter(utterance));
         }
     }
@@ -295,23 +301,20 @@ impl Engine<'_> {
                 self.release_talk(me, conversation, Some(number), me, &TalkCode::Settled, cause);
             }
         }
-        let over =
-            |side: Role| c.states[self.talks.branches[&number].states[side.index()] as usize].is_final();
-        if over(Role::Initiator) && (over(Role::Participant) || self.talks.branches[&number].entries[1] == 0)
-        {
-            // Who never heard of it is not told that it is over; what still comes finds nobody.
+        if s.is_final() {
             self.ended.push(number);
         }
     }
 
-    /// Conversations that are over for both sides are forgotten when nothing more is said in them at this
-    /// instant.
+    /// Conversations that are over for both sides are forgotten when nothing of them is under way any more. Who
+    /// never heard of one does not wait for its end.
     pub(super) fn forget_talks(&mut self) {
         for number in std::mem::take(&mut self.ended) {
             let Some(b) = self.talks.branches.get(&number) else { continue };
             let c = &self.mission.graph.conversations[b.conversation as usize];
             let over = |s: u32| c.states[s as usize].is_final();
-            if over(b.states[0]) && over(b.states[1]) {
+            let unaware = b.entries[Role::Participant.index()] == 0;
+            if b.under_way == 0 && over(b.states[0]) && (unaware || over(b.states[1])) {
                 self.talks.branches.remove(&number);
             }
         }
@@ -320,7 +323,9 @@ impl Engine<'_> {
     /// A message arrives.
     pub(super) fn hear(&mut self, u: Utterance) {
         let side = u.by.other();
-        let Some(b) = self.talks.branches.get(&u.branch) else { return };
+        let Some(b) = self.talks.branches.get_mut(&u.branch) else { return };
+        b.under_way = b.under_way.saturating_sub(1);
+        self.ended.push(u.branch);
         let (conversation, peers) = (b.conversation, b.peers);
         let me = peers[side.index()];
         let c = &self.mission.graph.conversations[conversation as usize];
@@ -330,10 +335,10 @@ impl Engine<'_> {
                 true => "the conversation is over".to_string(),
                 false => format!("unexpected in state {}", state.name),
             };
-            let expected = state.is_final();
+            let over = state.is_final();
             let answer = state.move_of(side, "not_understood").map(|m| m.target);
             self.trace_utterance(&u, me, Some(&why));
-            if let (false, Some(target)) = (expected, answer) {
+            if let (false, Some(target)) = (over, answer) {
                 let speech = Speech {
                     performative: "not_understood",
                     registers: &[],
@@ -342,9 +347,6 @@ impl Engine<'_> {
                     cause: Some(u.record),
                 };
                 self.utter(u.branch, side, target, &speech);
-            }
-            if state.is_final() {
-                self.ended.push(u.branch);
             }
             return;
         };
