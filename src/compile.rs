@@ -64,12 +64,29 @@ pub fn compile_mission(
     }
 }
 
+/// Compiles the mission of a test, with the faults that the test declares.
+pub fn compile_test(path: &str, mission: &str, test: &str) -> Result<Compiled, Refusal> {
+    let options = CheckOptions {
+        mission: Some(mission.to_string()),
+        test: Some(test.to_string()),
+        ..CheckOptions::default()
+    };
+    let checked = check_with(path, &options, &mut Vec::new())?;
+    match checked.graph {
+        Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
+        None => {
+            let what = format!("the mission `{mission}` of a test is not there");
+            Err(Refusal::about(path, "S0701", what, "in this file", "write its name as it is declared"))
+        }
+    }
+}
+
 /// Checks a file that may be without a mission.
 pub fn check(path: &str, platform: Option<&str>, mission: Option<&str>) -> Result<Checked, Refusal> {
     let options = CheckOptions {
         platform: platform.map(str::to_string),
         mission: mission.map(str::to_string),
-        timing: false,
+        ..CheckOptions::default()
     };
     check_with(path, &options, &mut Vec::new())
 }

@@ -94,8 +94,18 @@ impl Gatherer {
             Event::Contact { robot, with, begin, .. } => {
                 format!("{}: {} {with}", self.robot(*robot), if *begin { "touches" } else { "parts from" })
             }
-            Event::Goal { goal, robot, status } => {
-                format!("{}{goal} {status}", robot.map_or(String::new(), |r| format!("{}: ", self.robot(r))))
+            Event::Goal { goal, robot, status, reason } => {
+                let robot = robot.map_or(String::new(), |r| format!("{}: ", self.robot(r)));
+                let reason = reason.as_ref().map_or(String::new(), |why| format!(", {why}"));
+                format!("{robot}{goal} {status}{reason}")
+            }
+            Event::Life { agent, status, reason, .. } => match reason.as_str() {
+                "" => format!("{agent} is {status}"),
+                _ => format!("{agent} is {status}: {reason}"),
+            },
+            Event::Service { agent, service, running, subgoal, .. } => {
+                let subgoal = subgoal.as_ref().map_or(String::new(), |s| format!(" for {s}"));
+                format!("{agent}.{service} {}{subgoal}", if *running { "starts" } else { "stops" })
             }
             Event::Expectation { index, held, .. } => {
                 format!("expectation {index} {}", if *held { "held" } else { "violated" })

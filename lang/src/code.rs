@@ -81,6 +81,9 @@ codes! {
     PLACEMENT = "S0707", "Robots or things overlap at the start";
     EXCLUSIVE = "S0708", "An exclusive agent is wanted twice";
     TEST = "S0709", "A test cannot be run";
+    NO_CAPABLE = "S0710", "No agent is capable of a sub-goal";
+    NOT_AVAILABLE = "S0711", "Capable agents are not available";
+    FAULT = "S0712", "A fault that cannot happen";
 
     GRAPH = "S0801", "A damaged graph";
 }

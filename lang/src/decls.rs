@@ -36,6 +36,8 @@ pub struct Decls<'a> {
     pub worlds: Table<'a, Profile>,
     /// `mission`, in order, with the module they stand in
     pub missions: Vec<(usize, &'a Mission)>,
+    /// `plan`, in order, with the module they stand in
+    pub plans: Vec<(usize, &'a LibraryPlan)>,
     /// `test`, in order
     pub tests: Vec<&'a Test>,
     /// Names of functions in order of declaration (implementations are numbered so).
@@ -93,6 +95,7 @@ impl<'a> Decls<'a> {
                     Item::Protocol(p) => drop(d.protocols.insert(key, p)),
                     Item::Conversation(c) => d.conversations.push(c),
                     Item::Param(p) => d.params.push(p),
+                    Item::Plan(p) => d.plans.push((file, p)),
                     Item::Test(t) => d.tests.push(t),
                 }
             }
@@ -117,6 +120,7 @@ impl Item {
             Item::Protocol(x) => &x.name,
             Item::Conversation(x) => &x.name,
             Item::Param(x) => &x.name,
+            Item::Plan(x) => &x.name,
             Item::Test(x) => &x.name,
         }
     }

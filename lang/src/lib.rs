@@ -51,6 +51,8 @@ pub struct CheckOptions {
     pub platform: Option<String>,
     /// Which mission, when the program has several; else the root file's first.
     pub mission: Option<String>,
+    /// Test whose faults are to happen too.
+    pub test: Option<String>,
     /// Whether the timing is wanted.
     pub timing: bool,
 }
@@ -91,6 +93,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         platform: options.platform.clone(),
         alternative: 0,
         mission: options.mission.clone(),
+        test: options.test.clone(),
     };
     let mut graph = lower::lower(&program, &decls, &choice, &mut later);
     let tests = test_case::collect(&decls, graph.as_ref(), &mut later);
@@ -121,6 +124,9 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
             diagnostics.extend(here);
         }
     }
+    if !syntax_failed {
+        diagnostics.extend(of_tests(&program, &decls, &choice, &diagnostics));
+    }
     diagnostics.sort_by(|a, b| (a.position(), a.code, &a.title).cmp(&(b.position(), b.code, &b.title)));
     diagnostics.dedup();
     if diagnostics.iter().any(|d| d.severity == Severity::Error) {
@@ -128,6 +134,25 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     }
     let sources = std::mem::take(&mut program.sources);
     Checked { graph, missions, diagnostics, sources, tests, timings }
+}
+
+/// What is wrong only with the faults of a test.
+fn of_tests(
+    program: &modules::Program,
+    decls: &decls::Decls<'_>,
+    first: &lower::Choice,
+    known: &[Diagnostic],
+) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for t in decls.tests.iter().filter(|t| !t.faults.is_empty()) {
+        let (mission, test) = (t.run.first().map(|m| m.name.to_string()), Some(t.name.name.to_string()));
+        let mut here = Vec::new();
+        if let Some(g) = lower::lower(program, decls, &lower::Choice { mission, test, ..first.clone() }, &mut here) {
+            here.extend(verify(&g));
+        }
+        found.extend(here.into_iter().filter(|d| !known.contains(d)));
+    }
+    found
 }
 
 /// What is wrong only when robots are what `any of […]` names after the first.

@@ -19,6 +19,9 @@ pub struct Scene {
     pub platforms: Vec<PlatformScene>,
     /// Robots, then hosts; groups are expanded.
     pub robots: Vec<RobotScene>,
+    /// What goes wrong on purpose.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Part>,
 }
 
 /// A component with its arguments as values.

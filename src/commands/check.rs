@@ -74,7 +74,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     };
     let mut tables: Vec<String> = Vec::new();
     for path in &a.files {
-        let options = CheckOptions { platform: a.platform.clone(), mission: None, timing: a.timing };
+        let options = CheckOptions { platform: a.platform.clone(), timing: a.timing, ..CheckOptions::default() };
         let mut timings = Vec::new();
         let (findings, sound, graph, missions) = match compile::check_with(path, &options, &mut timings) {
             Ok(c) => (c.findings, true, c.graph, c.missions),

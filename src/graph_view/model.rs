@@ -238,6 +238,9 @@ impl Builder<'_> {
             }
             Trigger::Reading(p) => format!("on {}", reach::port(agent, true, *p)),
             Trigger::Event(e) => format!("on {}", agent.events.get(*e as usize).map_or("?", |n| n)),
+            Trigger::Param(p) => {
+                format!("on {}", self.graph.params.get(*p as usize).map_or("?", |p| &*p.name))
+            }
         }
     }
 
@@ -307,7 +310,10 @@ impl Builder<'_> {
             let name = goal.name.to_string();
             let id = self.thing(Kind::Goal, &name, vec![format!("goal {name}")]);
             for s in &goal.subgoals {
-                let agent = s.agent as usize;
+                let Some(agent) = s.agent.map(|a| a as usize) else {
+                    self.allocated(&id, &s.name);
+                    continue;
+                };
                 let plan = self.graph.agents.get(agent).and_then(|a| {
                     a.units.iter().position(
                         |u| matches!(&u.kind, UnitKind::Plan { subgoal: Some(g), .. } if *g == s.name),
@@ -315,6 +321,23 @@ impl Builder<'_> {
                 });
                 let from = plan.map_or_else(|| format!("a{agent}"), |j| unit_id(agent, j));
                 self.link(&from, &id, &s.name);
+            }
+        }
+    }
+}
+
+/// Those who offer what the plans for a sub-goal need.
+impl Builder<'_> {
+    fn allocated(&mut self, goal: &str, subgoal: &str) {
+        let graph = self.graph;
+        for plan in graph.plans.iter().filter(|p| *p.target == *subgoal) {
+            for (service, _) in &plan.needs {
+                for (a, agent) in graph.agents.iter().enumerate() {
+                    let offer = agent.offers.iter().find(|o| o.name == *service);
+                    if let Some(unit) = offer.and_then(|o| o.unit) {
+                        self.link(&unit_id(a, unit as usize), goal, &format!("{subgoal} by {}", plan.name));
+                    }
+                }
             }
         }
     }

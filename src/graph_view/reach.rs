@@ -24,7 +24,11 @@ impl Reach {
             Trigger::Message { topic, .. } => _ = r.heard.insert(*topic),
             Trigger::Reading(port) => _ = r.readings.insert(*port),
             Trigger::Event(e) => _ = r.waits.insert(*e),
-            Trigger::Every { .. } | Trigger::Step { .. } | Trigger::Told { .. } | Trigger::Talk { .. } => {}
+            Trigger::Every { .. }
+            | Trigger::Step { .. }
+            | Trigger::Told { .. }
+            | Trigger::Talk { .. }
+            | Trigger::Param(_) => {}
         }
         r.block(&unit.prelude);
         match &unit.kind {
@@ -101,6 +105,7 @@ impl Reach {
             }
             StmtKind::Note(_, e) => e.iter().for_each(|e| self.expr(e)),
             StmtKind::Raise(e) => _ = self.raises.insert(*e),
+            StmtKind::Govern(_) => {}
             StmtKind::If(c, a, b) => {
                 self.expr(c);
                 self.block(a);

@@ -95,7 +95,7 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
     ("pose", &[("robot", "index"), ("pose", "numbers"), ("path_m", "number")]),
     ("mover", &[("name", "text"), ("pose", "numbers")]),
     ("contact", &[("robot", "index"), ("other", "index?"), ("with", "text"), ("begin", "bool")]),
-    ("goal", &[("goal", "text"), ("robot", "index?"), ("status", "text")]),
+    ("goal", &[("goal", "text"), ("robot", "index?"), ("status", "text"), ("reason", "text?")]),
     ("expectation", &[("index", "index"), ("robot", "index?"), ("held", "bool"), ("margin", "number?")]),
     ("fault", &[("robot", "index?"), ("agent", "text"), ("text", "text")]),
     ("end", &[("outcome", "text"), ("reason", "text")]),
@@ -154,6 +154,7 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
         "device",
         &[("robot", "index"), ("agent", "text"), ("device", "text"), ("unit", "text?"), ("waiting", "index")],
     ),
+    ("trouble", &[("target", "text"), ("text", "text")]),
 ];
 
 /// Place of an event's kind in [`KINDS`].
@@ -188,6 +189,7 @@ pub(crate) fn kind(event: &Event) -> usize {
         Event::Service { .. } => 26,
         Event::Life { .. } => 27,
         Event::Device { .. } => 28,
+        Event::Trouble { .. } => 29,
     }
 }
 

@@ -30,17 +30,33 @@ pub struct Agent {
     pub units: Vec<Unit>,
     /// One for each actuator that several units command.
     pub arbiters: Vec<Arbiter>,
+    /// What happens when it fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub restart: Option<Restart>,
     /// Where it was written.
     pub span: Span,
 }
 
-/// A service an agent offers in the directory.
+/// How often an agent that fails is started again. One without this ends the run by its fault.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Restart {
+    /// How often at most in any span of so long; once more, and it stays dead.
+    pub times: u32,
+    /// The span.
+    pub within: Expr,
+}
+
+/// A service an agent offers in the directory: a unit of it, or a conversation of that name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Offer {
     /// Name.
     pub name: Name,
-    /// Inputs.
-    pub parameters: Vec<(Name, Type)>,
+    /// The unit, which runs only while the planner-matcher has engaged the agent for it. Absent: a conversation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<u32>,
+    /// Whether the agent agrees when it is asked: over its states and parameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub when: Option<Expr>,
     /// Where it was written.
     pub span: Span,
 }
@@ -94,6 +110,9 @@ pub struct Unit {
     /// Declared timing.
     #[serde(default)]
     pub timing: Timing,
+    /// Whether it waits to be started by the agent.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
     /// Types of its locals.
     pub locals: Vec<Type>,
     /// Agent-level `let`s it uses, evaluated first at every activation.
@@ -170,6 +189,8 @@ pub enum Trigger {
     Reading(u32),
     /// When an event of the agent is raised.
     Event(u32),
+    /// When a parameter of the mission is set.
+    Param(u32),
 }
 
 /// What may happen in a conversation.
@@ -300,6 +321,8 @@ pub enum StmtKind {
     Use(u32, Expr),
     /// Raises an event of the agent.
     Raise(u32),
+    /// Governs units, sub-goals and goals.
+    Govern(Govern),
     /// Sets a mission parameter.
     SetParam(u32, Expr),
     /// Condition, then, else.
@@ -328,6 +351,22 @@ pub enum StmtKind {
     },
     /// The first rule whose guard holds acts; the trace says which.
     Rules(Vec<Rule>),
+}
+
+/// What an agent decides about its units, and tells the planner-matcher.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Govern {
+    /// A unit of the agent is released from now on.
+    Start(u32),
+    /// A unit of the agent is released no more.
+    Stop(u32),
+    /// What the unit was engaged for is achieved.
+    Achieve,
+    /// What the unit was engaged for cannot be achieved by this agent, and why.
+    Fail(String),
+    /// A goal of the mission that is pursued on request is wanted.
+    Pursue(u32),
 }
 
 /// The first message of a conversation.

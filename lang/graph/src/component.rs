@@ -24,6 +24,8 @@ pub const NAMED_ROLES: &[&str] =
 pub const PLATFORM_ROLES: &[&str] = &["body", "drive", "sensor", "actuator", "safe", "prepare", "finish"];
 /// Roles a world has.
 pub const WORLD_ROLES: &[&str] = &["bounds", "wall", "obstacle", "region", "mover", "material"];
+/// Roles a mission or test has besides those of its world.
+pub const FAULT_ROLES: &[&str] = &["fault"];
 
 const TABLE: &[(&str, &str, &str)] = &[
     (
@@ -131,6 +133,46 @@ const TABLE: &[(&str, &str, &str)] = &[
         "conversation",
         "channel(delay: Duration = 1 us, loss: Number = 0, capacity: Int = 64)",
         "How messages travel: delay, chance of loss, how many wait for a unit",
+    ),
+    (
+        "fault",
+        "kill(agent: Text, at: Duration)",
+        "An agent dies: `NAME@ROBOT`, or `NAME` for one of that name that is drawn",
+    ),
+    (
+        "fault",
+        "drop(of: Text, chance: Number = 1, from: Duration = 0 s, until: Duration? = none)",
+        "Messages of a topic or conversation are lost",
+    ),
+    (
+        "fault",
+        "delay(of: Text, by: Duration, chance: Number = 1, from: Duration = 0 s, until: Duration? = none)",
+        "Messages of a topic or conversation take longer",
+    ),
+    (
+        "fault",
+        "duplicate(of: Text, chance: Number = 1, from: Duration = 0 s, until: Duration? = none)",
+        "Messages of a topic or conversation arrive twice",
+    ),
+    (
+        "fault",
+        "corrupt(of: Text, chance: Number = 1, from: Duration = 0 s, until: Duration? = none)",
+        "Messages of a topic or conversation arrive unreadable",
+    ),
+    (
+        "fault",
+        "dropout(sensor: Text, chance: Number = 1, from: Duration = 0 s, until: Duration? = none)",
+        "Readings of a sensor, `ROBOT.SENSOR`, do not arrive",
+    ),
+    (
+        "fault",
+        "bias(sensor: Text, by: Length, from: Duration = 0 s, until: Duration? = none)",
+        "Ranges and positions in the readings of a sensor, `ROBOT.SENSOR`, are off by so much",
+    ),
+    (
+        "fault",
+        "post(goal: Text, at: Duration)",
+        "Somebody outside asks the planner-matcher for a goal, whether there is one of that name or not",
     ),
 ];
 

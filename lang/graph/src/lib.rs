@@ -16,6 +16,7 @@ pub mod expr;
 pub mod function;
 pub mod mission;
 pub mod pattern;
+pub mod planning;
 pub mod reason;
 pub mod signature;
 pub mod span;

@@ -46,6 +46,12 @@ pub struct Graph {
     pub step: Option<Expr>,
     /// Goals.
     pub goals: Vec<Goal>,
+    /// Plans for them, from the plan library.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plans: Vec<LibraryPlan>,
+    /// What goes wrong, on purpose.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Component>,
     /// When the mission has succeeded.
     pub done: Expr,
     /// Time limit: `Duration` or `Steps`.
@@ -135,6 +141,9 @@ pub struct RobotGroup {
     pub target: Option<Expr>,
     /// Agents it runs.
     pub agents: Vec<AgentBinding>,
+    /// Agents that offer services and were to run here, but whose ports the platform does not have.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unfit: Vec<Unfit>,
     /// A computer without a body: its platform has no parts, and it is nowhere. Hosts come after robots.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub host: bool,
@@ -153,27 +162,66 @@ pub struct AgentBinding {
     pub at: Span,
 }
 
+/// An agent that is not functionally capable on a platform.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unfit {
+    /// Index of the agent type.
+    pub agent: u32,
+    /// `sensor` or `actuator`.
+    pub role: Name,
+    /// The port that the platform does not have, or has of another type.
+    pub port: Name,
+    /// Where the robot runs it.
+    pub at: Span,
+}
+
 /// A goal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
     /// Name.
     pub name: Name,
+    /// Pursued only when an agent asks for it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub on_request: bool,
     /// Sub-goals; the goal is achieved when all are.
     pub subgoals: Vec<SubGoal>,
     /// Where it was written.
     pub at: Span,
 }
 
-/// A sub-goal, pursued by an agent on every robot that runs it.
+/// A sub-goal: pursued by an agent on every robot that runs it, or by whom the planner-matcher allocates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SubGoal {
     /// Name.
     pub name: Name,
-    /// Index of the agent type.
-    pub agent: u32,
+    /// Index of the agent type. Absent: the planner-matcher finds agents by the plans for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub agent: Option<u32>,
     /// When the agent believes it achieved: over the agent's states and parameters. Absent: when the
-    /// agent's plan for it succeeds.
+    /// agent's plan for it succeeds, or, of allocated ones, when an agent says so.
     pub achieved: Option<Expr>,
+    /// Allocated: each robot has one of its own. Otherwise the mission has one.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub each_robot: bool,
+    /// Wanted only while this is the plan for the goal, by index.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<u32>,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// A plan of the plan library: a way to a goal or sub-goal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LibraryPlan {
+    /// Name.
+    pub name: Name,
+    /// Name of the goal or sub-goal it is for.
+    pub target: Name,
+    /// Whether it is one at present: over the parameters of the mission.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub when: Option<Expr>,
+    /// Services that agents must offer, all of them on one robot or on hosts.
+    pub needs: Vec<(Name, Span)>,
     /// Where it was written.
     pub at: Span,
 }

@@ -12,6 +12,8 @@ pub struct Agent {
     pub params: Vec<(Ident, TypeRef)>,
     /// Collaborative.
     pub collaborative: bool,
+    /// `restart n within …`
+    pub restart: Option<(i64, Expr)>,
     /// Members in order.
     pub members: Vec<AgentMember>,
 }
@@ -19,8 +21,8 @@ pub struct Agent {
 /// A member of an agent.
 #[derive(Debug, Clone)]
 pub enum AgentMember {
-    /// `offers`
-    Offers(Ident, Vec<(Ident, TypeRef)>),
+    /// `offers … when`
+    Offers(Ident, Option<Expr>),
     /// `sensor`
     Sensor(Ident, TypeRef),
     /// `actuator`
@@ -104,6 +106,8 @@ pub enum TriggerKind {
     Sensor(Ident),
     /// `on inform Record(x) from agent`
     Told(Ident, Ident, Ident, Option<Ident>),
+    /// `on param`
+    Param(Ident),
     /// `on topic(x)`
     Topic(Ident, Ident),
     /// `on conversation refuse`
@@ -131,6 +135,8 @@ pub enum Timing {
     Priority(i64),
     /// `core`
     Core(i64),
+    /// `stopped`
+    Stopped,
 }
 
 /// A state of a machine.

@@ -70,6 +70,8 @@ pub enum StmtKind {
     Note(String, Option<Expr>),
     /// `raise`
     Raise(Ident),
+    /// `start`, `stop`, `achieve`, `fail`, `pursue`
+    Govern(Govern),
     /// `if … else if … else …`
     If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
     /// `match`
@@ -169,4 +171,19 @@ pub enum ExprKind {
     Tuple(Vec<Expr>),
     /// What could not be read; an error has been reported.
     Bad,
+}
+
+/// What an agent decides about its units, and tells the planner-matcher.
+#[derive(Debug, Clone)]
+pub enum Govern {
+    /// `start UNIT`
+    Start(Ident),
+    /// `stop UNIT`
+    Stop(Ident),
+    /// `achieve`
+    Achieve,
+    /// `fail "why"`
+    Fail(String),
+    /// `pursue GOAL`
+    Pursue(Ident),
 }

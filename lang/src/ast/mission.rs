@@ -78,19 +78,38 @@ pub struct Host {
 pub struct Goal {
     /// Name.
     pub name: Ident,
+    /// Pursued only on request.
+    pub on_request: bool,
     /// Sub-goals.
     pub subgoals: Vec<SubGoal>,
 }
 
-/// `subgoal name by agent achieved when …`
+/// `[each robot:] subgoal name [by agent] [achieved when …]`
 #[derive(Debug, Clone)]
 pub struct SubGoal {
     /// Name.
     pub name: Ident,
-    /// Agent.
-    pub agent: Ident,
+    /// One for each robot.
+    pub each_robot: bool,
+    /// Agent; without one it is allocated.
+    pub agent: Option<Ident>,
     /// Condition.
     pub achieved: Option<Expr>,
+}
+
+/// `plan name for goal when … { needs service  subgoal name }`
+#[derive(Debug, Clone)]
+pub struct LibraryPlan {
+    /// Name.
+    pub name: Ident,
+    /// Goal or sub-goal.
+    pub target: Ident,
+    /// When it is one.
+    pub when: Option<Expr>,
+    /// Services it needs.
+    pub needs: Vec<Ident>,
+    /// Sub-goals it makes of a goal.
+    pub subgoals: Vec<SubGoal>,
 }
 
 /// An expectation.
@@ -136,4 +155,6 @@ pub struct Test {
     pub outcome: Option<Ident>,
     /// `expect`
     pub expects: Vec<Expr>,
+    /// `fault = …`
+    pub faults: Vec<Entry>,
 }

@@ -72,6 +72,8 @@ pub enum Item {
     Conversation(Conversation),
     /// `param`
     Param(Param),
+    /// `plan … for …`
+    Plan(LibraryPlan),
     /// `test`
     Test(Test),
 }

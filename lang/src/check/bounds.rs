@@ -129,7 +129,7 @@ impl Costs<'_> {
                 let guards = rules.iter().map(|r| self.guard(&r.guard)).fold(0, u64::saturating_add);
                 guards.saturating_add(rules.iter().map(|r| self.block(&r.body)).max().unwrap_or(0))
             }
-            StmtKind::Raise(_) => 0,
+            StmtKind::Raise(_) | StmtKind::Govern(_) => 0,
         };
         cost.saturating_add(1)
     }

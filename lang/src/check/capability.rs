@@ -134,7 +134,7 @@ fn port_on(
 }
 
 /// Whether readings of type `have` can be handed to a port of type `want`.
-fn fits(have: &Type, want: &Type) -> bool {
+pub(crate) fn fits(have: &Type, want: &Type) -> bool {
     match (have, want) {
         (Type::List(a, n), Type::List(b, m)) => a == b && n <= m,
         _ => have == want,

@@ -45,8 +45,9 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             );
         }
         for s in &goal.subgoals {
-            let Some(a) = g.agents.get(s.agent as usize) else { continue };
-            if !used.get(s.agent as usize).is_some_and(|u| *u) && !g.robots.is_empty() {
+            let Some(by) = s.agent else { continue };
+            let Some(a) = g.agents.get(by as usize) else { continue };
+            if !used.get(by as usize).is_some_and(|u| *u) && !g.robots.is_empty() {
                 out.push(
                     Diagnostic::error(
                         code::NO_AGENT,
@@ -77,7 +78,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
                 .goals
                 .iter()
                 .flat_map(|g| &g.subgoals)
-                .filter(|s| s.agent as usize == i)
+                .filter(|s| s.agent == Some(i as u32))
                 .map(|s| &*s.name)
                 .collect();
             if used[i] && !known.contains(&&**n) {

@@ -1,6 +1,7 @@
 //! What can be known before anything moves: checks on the graph, one file for each question. They run on
 //! graphs from sources and from graph files alike.
 
+mod allocation;
 mod anytime;
 mod arbitration;
 mod bounds;
@@ -11,6 +12,7 @@ mod constants;
 mod conversations;
 mod effects;
 mod events;
+mod faults;
 mod form;
 mod goals;
 mod hosts;
@@ -27,6 +29,7 @@ mod topics;
 mod types;
 pub mod walk;
 
+pub(crate) use capability::fits;
 pub(crate) use constants::{Constants, not_computable};
 pub(crate) use ranges::wrong_period;
 
@@ -43,6 +46,8 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(knowledge::check(graph));
     out.extend(goals::check(graph));
     out.extend(capability::check(graph));
+    out.extend(allocation::check(graph));
+    out.extend(faults::check(graph));
     out.extend(hosts::check(graph));
     out.extend(quantifiers::check(graph));
     out.extend(clock::check(graph));

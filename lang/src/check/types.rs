@@ -4,7 +4,7 @@
 use super::walk;
 use crate::code;
 use soifra_graph::{
-    Agent, Diagnostic, Dim, ExpectKind, Expr, Frame, Graph, ListOp, Op, Own, Quantifier, Run, Span, Stmt,
+    Agent, Diagnostic, Dim, ExpectKind, Expr, Frame, Govern, Graph, ListOp, Op, Own, Quantifier, Run, Span, Stmt,
     StmtKind, Strategy, Trigger, Truth, Type, UnitKind, Value, pattern::Bindings, typing,
 };
 
@@ -147,15 +147,35 @@ impl<'a> Types<'a> {
             self.lone(&m.value, &[]);
         }
         for s in g.goals.iter().flat_map(|goal| &goal.subgoals) {
-            match g.agents.get(s.agent as usize) {
-                Some(a) => self.agent = Some(a),
-                None => self.bad(s.at, "a sub-goal without an agent"),
+            match s.agent.map(|a| g.agents.get(a as usize)) {
+                Some(Some(a)) => self.agent = Some(a),
+                Some(None) => self.bad(s.at, "a sub-goal without an agent"),
+                None if s.achieved.is_some() => self.bad(s.at, "a condition of nobody"),
+                None => {}
+            }
+            if s.plan.is_some_and(|p| p as usize >= g.plans.len()) {
+                self.bad(s.at, "a sub-goal of no plan");
             }
             if let Some(e) = &s.achieved {
                 self.want(e, &Type::Bool);
                 self.lone(e, &[]);
             }
             self.agent = None;
+        }
+        self.plans();
+    }
+
+    /// The plan library, and what is left of agents that are not capable.
+    fn plans(&mut self) {
+        let g = self.g;
+        for e in g.plans.iter().filter_map(|p| p.when.as_ref()) {
+            self.want(e, &Type::Bool);
+            self.lone(e, &[]);
+        }
+        for u in g.robots.iter().flat_map(|r| &r.unfit) {
+            if u.agent as usize >= g.agents.len() {
+                self.bad(u.at, "an agent that is not there");
+            }
         }
     }
 
@@ -171,6 +191,19 @@ impl<'a> Types<'a> {
         for s in &a.states {
             self.want(&s.initial, &s.ty);
             self.lone(&s.initial, &[]);
+        }
+        for o in &a.offers {
+            if o.unit.is_some_and(|u| u as usize >= a.units.len()) {
+                self.bad(o.span, "an offer of no unit");
+            }
+            if let Some(e) = &o.when {
+                self.want(e, &Type::Bool);
+                self.lone(e, &[]);
+            }
+        }
+        if let Some(r) = &a.restart {
+            self.want(&r.within, &Type::Quantity(Dim::TIME));
+            self.lone(&r.within, &[]);
         }
         for u in &a.units {
             self.locals = u.locals.clone();
@@ -206,6 +239,9 @@ impl<'a> Types<'a> {
                     }
                 }
                 Trigger::Reading(p) if *p as usize >= a.sensors.len() => self.bad(u.span, "no such sensor"),
+                Trigger::Param(p) if *p as usize >= self.g.params.len() => {
+                    self.bad(u.span, "no such parameter");
+                }
                 Trigger::Event(e) if *e as usize >= a.events.len() => self.bad(u.span, "no such event"),
                 _ => {}
             }
@@ -314,6 +350,17 @@ impl<'a> Types<'a> {
             }
             StmtKind::Use(i, e) => (a.devices.get(*i as usize).map(|_| Type::Quantity(Dim::TIME)), e),
             StmtKind::Raise(i) if *i as usize >= a.events.len() => return self.bad(s.at, "no such event"),
+            StmtKind::Govern(what) => {
+                let there = match what {
+                    Govern::Start(u) | Govern::Stop(u) => (*u as usize) < a.units.len(),
+                    Govern::Pursue(goal) => (*goal as usize) < self.g.goals.len(),
+                    Govern::Achieve | Govern::Fail(_) => true,
+                };
+                if !there {
+                    self.bad(s.at, "a unit or goal that is not there");
+                }
+                return;
+            }
             _ => return,
         };
         match wanted {

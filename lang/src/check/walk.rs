@@ -9,6 +9,7 @@ pub fn agent<'a>(a: &'a Agent, visit: &mut dyn FnMut(&'a Expr)) {
     for s in &a.states {
         s.initial.walk(visit);
     }
+    a.offers.iter().filter_map(|o| o.when.as_ref()).for_each(|e| e.walk(visit));
     for u in &a.units {
         unit(u, visit);
     }
@@ -143,6 +144,6 @@ fn expressions_of<'a>(s: &'a Stmt, visit: &mut dyn FnMut(&'a Expr)) {
         StmtKind::If(e, _, _) => e.walk(visit),
         StmtKind::IfSome { value, .. } | StmtKind::Switch { value, .. } => value.walk(visit),
         StmtKind::Rules(rules) => rules.iter().for_each(|r| guard(&r.guard, visit)),
-        StmtKind::Raise(_) => {}
+        StmtKind::Raise(_) | StmtKind::Govern(_) => {}
     }
 }

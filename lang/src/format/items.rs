@@ -18,6 +18,7 @@ impl Builder<'_, '_> {
             | Rule::machine
             | Rule::machine_state
             | Rule::plan
+            | Rule::library_plan
             | Rule::function_body
             | Rule::rules_stmt
             | Rule::match_stmt
@@ -62,6 +63,8 @@ impl Builder<'_, '_> {
             | Rule::publish_stmt
             | Rule::tell_stmt
             | Rule::note_stmt
+            | Rule::plan_when
+            | Rule::offer_when
             | Rule::function
             | Rule::done
             | Rule::weighted

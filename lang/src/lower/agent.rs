@@ -3,9 +3,10 @@
 use crate::{
     ast::{Agent, AgentMember},
     code,
+    decls::unknown,
     typed::{AgentScope, Body, Checker, Place},
 };
-use soifra_graph::{Agent as GAgent, Device, Diagnostic, Expr, Name, Offer, Port, State, Type};
+use soifra_graph::{Agent as GAgent, Device, Diagnostic, Expr, Name, Offer, Port, Restart, State, Type};
 
 impl<'a> Checker<'a> {
     /// Lowers an agent; parts with errors are left out.
@@ -22,6 +23,7 @@ impl<'a> Checker<'a> {
             devices: Vec::new(),
             units: Vec::new(),
             arbiters: Vec::new(),
+            restart: None,
             span: a.name.span,
         };
         self.agent = AgentScope { name: a.name.name.clone(), ..AgentScope::default() };
@@ -37,15 +39,8 @@ impl<'a> Checker<'a> {
         self.states(a, &mut out);
         for m in &a.members {
             match m {
-                AgentMember::Offers(n, params) => {
-                    let mut list = Vec::new();
-                    for (p, t) in params {
-                        if let Some(ty) = self.resolve_type(t, None) {
-                            list.push((p.name.clone(), ty));
-                        }
-                    }
-                    out.offers.push(Offer { name: n.name.clone(), parameters: list, span: n.span });
-                }
+                AgentMember::Offers(n, _) => self.agent.offered.push(n.name.clone()),
+                AgentMember::Unit(u) => self.agent.units.push(u.name.name.clone()),
                 AgentMember::Constant(c) => drop(self.agent.lets.insert(c.name.name.clone(), c)),
                 AgentMember::Action(x) => drop(self.agent.actions.insert(x.name.name.clone(), x)),
                 _ => {}
@@ -58,6 +53,13 @@ impl<'a> Checker<'a> {
                 out.units.push(unit);
             }
         }
+        self.offers(a, &mut out);
+        if let Some((times, within)) = &a.restart
+            && let Some(within) = self.start_duration(within)
+        {
+            let times = u32::try_from(*times).unwrap_or(u32::MAX);
+            out.restart = Some(Restart { times, within });
+        }
         self.unused_parts(a);
         for m in &a.members {
             if let AgentMember::Arbiter(x) = m
@@ -67,6 +69,30 @@ impl<'a> Checker<'a> {
             }
         }
         out
+    }
+
+    /// What it offers: units and conversations.
+    fn offers(&mut self, a: &'a Agent, out: &mut GAgent) {
+        for m in &a.members {
+            let AgentMember::Offers(n, when) = m else { continue };
+            let unit = self.agent.units.iter().position(|u| *u == n.name).map(|u| u as u32);
+            if unit.is_none() && self.conversations.position(&n.name).is_none() {
+                let units = self.agent.units.iter().cloned();
+                let known: Vec<Name> = units.chain(self.conversations.iter().map(|c| c.name.clone())).collect();
+                let what = "service, machine, plan or conversation";
+                let d = unknown(code::UNKNOWN_NAME, what, &n.name, n.span, known.iter().map(|k| &**k));
+                self.report(d);
+                continue;
+            }
+            let when = match when {
+                Some(e) => match self.in_body(Body::new(Place::Belief), |c| c.typed(e, &Type::Bool)).0 {
+                    Some(e) => Some(e),
+                    None => continue,
+                },
+                None => None,
+            };
+            out.offers.push(Offer { name: n.name.clone(), unit, when, span: n.span });
+        }
     }
 
     /// Every name an agent declares means one thing in it.
@@ -82,6 +108,9 @@ impl<'a> Checker<'a> {
                 _ => {}
             }
         }
+        self.distinct(
+            a.members.iter().filter_map(|m| if let AgentMember::Offers(n, _) = m { Some(n) } else { None }),
+        );
         self.distinct(names);
         self.distinct(units);
         self.distinct(

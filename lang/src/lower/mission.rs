@@ -8,8 +8,9 @@ use crate::{
     typed::{Body, Checker, Place},
 };
 use soifra_graph::{
-    Component, Diagnostic, Goal, Graph, Metric, Name, Param, RobotGroup, SCHEMA, Span, SubGoal, Type,
-    component::WORLD_ROLES, typing,
+    Component, Diagnostic, Graph, Metric, Name, Param, RobotGroup, SCHEMA, Span, Type,
+    component::{FAULT_ROLES, WORLD_ROLES},
+    typing,
 };
 use std::collections::BTreeMap;
 
@@ -22,6 +23,8 @@ pub struct Choice {
     pub alternative: usize,
     /// Mission, when a file has several; the first otherwise.
     pub mission: Option<String>,
+    /// Test whose faults are the mission's too.
+    pub test: Option<String>,
 }
 
 /// Lowers a mission, or, when there is none, checks every declaration by itself.
@@ -76,6 +79,7 @@ impl<'a> Checker<'a> {
             agents: Default::default(),
             robots: Default::default(),
             goals: Default::default(),
+            pursuable: None,
             mission_lets: BTreeMap::new(),
             regions: Default::default(),
             body: Body::new(Place::Constant),
@@ -128,6 +132,16 @@ impl<'a> Checker<'a> {
         params: Vec<Param>,
     ) -> Option<Graph> {
         let world = self.world(m);
+        let faults = self.faults(m, choice);
+        self.pursuable = Some(
+            m.members
+                .iter()
+                .filter_map(|x| match x {
+                    M::Goal(g) => Some((g.name.clone(), g.on_request)),
+                    _ => None,
+                })
+                .collect(),
+        );
         self.regions = world.iter().filter(|c| &*c.role == "region").map(|c| c.name.clone()).collect();
         self.lower_agents();
         let index: BTreeMap<Name, u32> =
@@ -183,7 +197,7 @@ impl<'a> Checker<'a> {
         let step =
             self.single(m, "clock step", |x| if let M::Clock(e) = x { Some((e, e.span)) } else { None });
         let step = step.and_then(|e| self.start_duration(e));
-        let goals = self.goals(m, &index);
+        let (goals, plans) = self.goals(m, &index);
         let done = self.done(m, &goals);
         let within = self.single(m, "within", |x| if let M::Within(e, s) = x { Some((e, *s)) } else { None });
         let within = within.and_then(|e| self.limit(e));
@@ -237,11 +251,25 @@ impl<'a> Checker<'a> {
             robots,
             step,
             goals,
+            plans,
+            faults,
             done: done?,
             within,
             expects,
             metrics,
         })
+    }
+
+    /// What goes wrong on purpose: in the mission, and in the test that is chosen.
+    fn faults(&mut self, m: &'a ast::Mission, choice: &Choice) -> Vec<Component> {
+        let of_mission = m.members.iter().filter_map(|x| match x {
+            M::Entry(e) if FAULT_ROLES.contains(&&*e.role.name) => Some(e),
+            _ => None,
+        });
+        let test = self.decls.tests.iter().find(|t| choice.test.as_deref() == Some(&*t.name.name));
+        let of_test = test.into_iter().flat_map(|t| &t.faults);
+        let all: Vec<&ast::Entry> = of_mission.chain(of_test).collect();
+        all.into_iter().filter_map(|e| self.component(e, FAULT_ROLES)).collect()
     }
 
     /// Conditions may ask for it by name.
@@ -292,56 +320,18 @@ impl<'a> Checker<'a> {
                         self.report(d);
                     }
                 },
-                M::Entry(e) => entries.push(e),
+                M::Entry(e) if !FAULT_ROLES.contains(&&*e.role.name) => entries.push(e),
                 _ => {}
             }
         }
         self.distinct(entries.iter().filter_map(|e| e.name.as_ref()));
         let mut out = Vec::new();
         for e in entries {
-            match (self.component(e, WORLD_ROLES), &e.name) {
+            match (self.component(e, &[WORLD_ROLES, FAULT_ROLES].concat()), &e.name) {
                 (Some(c), _) => out.push(c),
                 (None, Some(n)) => self.poison(&n.name),
                 (None, None) => {}
             }
-        }
-        out
-    }
-
-    fn goals(&mut self, m: &'a ast::Mission, agents: &BTreeMap<Name, u32>) -> Vec<Goal> {
-        self.distinct(m.members.iter().filter_map(|x| if let M::Goal(g) = x { Some(&g.name) } else { None }));
-        let mut out = Vec::new();
-        for member in &m.members {
-            let M::Goal(g) = member else { continue };
-            self.goals.push(g.name.name.clone());
-            self.distinct(g.subgoals.iter().map(|s| &s.name));
-            let mut subgoals = Vec::new();
-            for s in &g.subgoals {
-                let Some(i) = agents.get(&s.agent.name) else {
-                    let d = unknown(
-                        code::UNKNOWN_NAME,
-                        "agent",
-                        &s.agent.name,
-                        s.agent.span,
-                        agents.keys().map(|k| &**k),
-                    );
-                    self.report(d);
-                    continue;
-                };
-                let achieved = match &s.achieved {
-                    Some(e) => {
-                        self.enter_agent(*i);
-                        let (value, _) = self.in_body(Body::new(Place::Belief), |c| c.typed(e, &Type::Bool));
-                        match value {
-                            Some(v) => Some(v),
-                            None => continue,
-                        }
-                    }
-                    None => None,
-                };
-                subgoals.push(SubGoal { name: s.name.name.clone(), agent: *i, achieved, at: s.name.span });
-            }
-            out.push(Goal { name: g.name.name.clone(), subgoals, at: g.name.span });
         }
         out
     }

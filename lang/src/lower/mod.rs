@@ -6,6 +6,7 @@ mod component;
 mod conversation;
 mod declarations;
 mod function;
+mod goals;
 mod judgement;
 mod machine;
 mod mission;

@@ -1,12 +1,14 @@
 //! Robots and the platforms they are instances of.
 
 use crate::{
-    ast, code,
+    ast,
+    check::fits,
+    code,
     decls::unknown,
     typed::{Body, Checker, Place},
 };
 use soifra_graph::{
-    AgentBinding, Diagnostic, Dim, Expr, Frame, Name, Op, Own, Platform, RobotGroup, Type, Value,
+    AgentBinding, Diagnostic, Dim, Expr, Frame, Name, Op, Own, Platform, RobotGroup, Type, Unfit, Value,
     component::PLATFORM_ROLES,
 };
 use std::collections::BTreeMap;
@@ -79,7 +81,11 @@ impl<'a> Checker<'a> {
             ),
             None => None,
         };
-        let bindings = self.bindings(&r.name, r.count.is_some(), &r.runs, agents)?;
+        let mut bindings = self.bindings(&r.name, r.count.is_some(), &r.runs, agents)?;
+        let unfit = match index.and_then(|i| done.get(i as usize)) {
+            Some(p) => self.unfit(p, &mut bindings),
+            None => Vec::new(),
+        };
         Some(RobotGroup {
             name: r.name.name.clone(),
             count,
@@ -94,6 +100,7 @@ impl<'a> Checker<'a> {
             scatter,
             target,
             agents: bindings,
+            unfit,
             host: false,
             at: r.name.span,
         })
@@ -123,6 +130,7 @@ impl<'a> Checker<'a> {
             scatter: None,
             target: None,
             agents: bindings,
+            unfit: Vec::new(),
             host: true,
             at: h.name.span,
         })
@@ -184,6 +192,28 @@ impl<'a> Checker<'a> {
             bindings.push(AgentBinding { agent: *i, arguments, at: agent.span });
         }
         Some(bindings)
+    }
+
+    /// Takes out the agents that are allocated and whose ports the platform does not have: they cannot be.
+    fn unfit(&self, p: &Platform, bindings: &mut Vec<AgentBinding>) -> Vec<Unfit> {
+        let mut out = Vec::new();
+        bindings.retain(|b| {
+            let a = &self.agents[b.agent as usize];
+            if a.offers.iter().all(|o| o.unit.is_none()) {
+                return true;
+            }
+            let ports = a.sensors.iter().map(|s| ("sensor", s));
+            let ports = ports.chain(a.actuators.iter().map(|s| ("actuator", s)));
+            let lacks = ports.into_iter().find(|(role, port)| {
+                let has = p.of_role(role).find(|c| c.name == port.name);
+                !has.and_then(|c| c.ty.as_ref()).is_some_and(|t| fits(t, &port.ty))
+            });
+            if let Some((role, port)) = lacks {
+                out.push(Unfit { agent: b.agent, role: role.into(), port: port.name.clone(), at: b.at });
+            }
+            lacks.is_none()
+        });
+        out
     }
 
     /// A pose, or a point with the heading to the east.

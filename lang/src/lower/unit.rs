@@ -34,6 +34,7 @@ impl<'a> Checker<'a> {
             name: u.name.name.clone(),
             trigger: trigger?,
             timing,
+            stopped: u.timing.iter().any(|t| matches!(t, ast::Timing::Stopped)),
             locals: body.locals,
             prelude: body.prelude,
             kind: kind?,
@@ -65,6 +66,13 @@ impl<'a> Checker<'a> {
                 None => {
                     let names: Vec<Name> = self.agent.sensors.iter().map(|(n, _, _)| n.clone()).collect();
                     return self.unknown_trigger("sensor", s, &names);
+                }
+            },
+            TriggerKind::Param(p) => match self.params.position(&p.name) {
+                Some(i) => Trigger::Param(i as u32),
+                None => {
+                    let names: Vec<Name> = self.params.iter().map(|(n, _, _)| n.clone()).collect();
+                    return self.unknown_trigger("parameter", p, &names);
                 }
             },
             TriggerKind::Topic(topic, name) => match self.topics.position(&topic.name) {
@@ -238,6 +246,7 @@ impl<'a> Checker<'a> {
                 }
                 ast::Timing::Priority(n) => t.priority = Some(*n),
                 ast::Timing::Core(n) => t.core = Some(*n),
+                ast::Timing::Stopped => {}
             }
         }
         t

@@ -13,14 +13,19 @@ impl Builder {
         c.word(Rule::K_AGENT);
         let name = self.ident(&mut c);
         let params = self.params(&mut c);
-        c.word(Rule::K_EXCLUSIVE);
-        let collaborative = c.word(Rule::K_COLLABORATIVE);
+        let collaborative = c.take(Rule::collaborative).is_some();
+        let restart = c.take(Rule::agent_restart).map(|p| {
+            let mut c = Cursor::new(p);
+            (self.int(&mut c), self.expr_in(&mut c))
+        });
         let mut members = Vec::new();
         while let Some(p) = c.any() {
             members.push(match p.as_rule() {
                 Rule::offers => {
                     let mut c = Cursor::new(p);
-                    AgentMember::Offers(self.ident(&mut c), self.params(&mut c))
+                    let name = self.ident(&mut c);
+                    let when = c.take(Rule::offer_when).map(|p| self.expr_in(&mut Cursor::new(p)));
+                    AgentMember::Offers(name, when)
                 }
                 Rule::sensor_port => {
                     let mut c = Cursor::new(p);
@@ -85,7 +90,7 @@ impl Builder {
                 _ => continue,
             });
         }
-        Agent { name, params, collaborative, members }
+        Agent { name, params, collaborative, restart, members }
     }
 
     fn action(&mut self, p: P<'_>) -> Action {
@@ -126,6 +131,7 @@ impl Builder {
                 Timing::Core(self.int(&mut c))
             } else {
                 match c.peek() {
+                    Some(Rule::timing_stopped) => Timing::Stopped,
                     Some(rule @ (Rule::timing_deadline | Rule::timing_shares)) => {
                         let Some(p) = c.any() else { continue };
                         let mut c = Cursor::new(p);
@@ -165,6 +171,7 @@ impl Builder {
             }
             Rule::on_event => TriggerKind::Event(self.ident(&mut c)),
             Rule::on_sensor => TriggerKind::Sensor(self.ident(&mut c)),
+            Rule::on_param => TriggerKind::Param(self.ident(&mut c)),
             Rule::on_told => {
                 let (performative, content, local) =
                     (self.ident(&mut c), self.ident(&mut c), self.ident(&mut c));
@@ -174,6 +181,21 @@ impl Builder {
             _ => TriggerKind::Topic(self.ident(&mut c), self.ident(&mut c)),
         };
         Trigger { kind, span }
+    }
+
+    fn govern(&mut self, p: Option<P<'_>>) -> Govern {
+        let Some(p) = p else { return Govern::Achieve };
+        let rule = p.as_rule();
+        let mut c = Cursor::new(p);
+        match rule {
+            Rule::govern_start => Govern::Start(self.ident(&mut c)),
+            Rule::govern_stop => Govern::Stop(self.ident(&mut c)),
+            Rule::govern_pursue => Govern::Pursue(self.ident(&mut c)),
+            Rule::govern_fail => {
+                Govern::Fail(c.take(Rule::string).map(|p| unquote(p.as_str())).unwrap_or_default())
+            }
+            _ => Govern::Achieve,
+        }
     }
 
     fn offset(&mut self, c: &mut Cursor<'_>) -> Option<Expr> {
@@ -375,6 +397,7 @@ impl Builder {
                 StmtKind::Note(text, c.take(Rule::expr).map(|e| self.expr(e)))
             }
             Rule::raise_stmt => StmtKind::Raise(self.ident(&mut c)),
+            Rule::govern_stmt => StmtKind::Govern(self.govern(c.any())),
             Rule::do_stmt => {
                 StmtKind::Do(self.ident(&mut c), c.take(Rule::args).map(|a| self.args(a)).unwrap_or_default())
             }

@@ -96,6 +96,15 @@ fn is_aside(rule: Rule) -> bool {
             | Rule::K_EXCLUSIVE
             | Rule::K_COLLABORATIVE
             | Rule::K_OFFERS
+            | Rule::K_NEEDS
+            | Rule::K_REQUEST
+            | Rule::K_RESTART
+            | Rule::K_STOPPED
+            | Rule::K_START
+            | Rule::K_STOP
+            | Rule::K_ACHIEVE
+            | Rule::K_FAIL
+            | Rule::K_PURSUE
             | Rule::K_SENSOR
             | Rule::K_ACTUATOR
             | Rule::K_STATE

@@ -63,6 +63,7 @@ impl Builder {
             Rule::protocol => Item::Protocol(self.protocol(p)),
             Rule::conversation => Item::Conversation(self.conversation(p)),
             Rule::param => Item::Param(self.param(p)),
+            Rule::library_plan => Item::Plan(self.library_plan(p)),
             Rule::test => Item::Test(self.test(p)),
             _ => return None,
         })
@@ -229,14 +230,35 @@ impl Builder {
     fn goal(&mut self, p: P<'_>) -> Goal {
         let mut c = Cursor::new(p);
         let name = self.ident(&mut c);
-        let mut subgoals = Vec::new();
-        for s in c.all(Rule::subgoal) {
-            let mut c = Cursor::new(s);
-            let (name, agent) = (self.ident(&mut c), self.ident(&mut c));
-            let achieved = c.take(Rule::expr).map(|e| self.expr(e));
-            subgoals.push(SubGoal { name, agent, achieved });
+        let on_request = c.take(Rule::goal_request).is_some();
+        let subgoals = c.all(Rule::subgoal).into_iter().map(|p| self.subgoal(p)).collect();
+        Goal { name, on_request, subgoals }
+    }
+
+    fn subgoal(&mut self, p: P<'_>) -> SubGoal {
+        let mut c = Cursor::new(p);
+        let each_robot = c.take(Rule::expect_each).is_some();
+        let name = self.ident(&mut c);
+        let agent = c.take(Rule::subgoal_by).map(|p| self.ident(&mut Cursor::new(p)));
+        let achieved = c.take(Rule::expr).map(|e| self.expr(e));
+        SubGoal { name, each_robot, agent, achieved }
+    }
+
+    fn library_plan(&mut self, p: P<'_>) -> LibraryPlan {
+        let mut c = Cursor::new(p);
+        let (name, target) = (self.ident(&mut c), self.ident(&mut c));
+        let when = c.take(Rule::plan_when).map(|p| self.expr_in(&mut Cursor::new(p)));
+        let (mut needs, mut subgoals) = (Vec::new(), Vec::new());
+        while let Some(p) = c.any() {
+            match p.as_rule() {
+                Rule::needs => {
+                    needs.extend(Cursor::new(p).all(Rule::ident).iter().map(|p| self.name(p)));
+                }
+                Rule::subgoal => subgoals.push(self.subgoal(p)),
+                _ => {}
+            }
         }
-        Goal { name, subgoals }
+        LibraryPlan { name, target, when, needs, subgoals }
     }
 
     fn expect(&mut self, p: P<'_>) -> Expect {
@@ -272,8 +294,15 @@ impl Builder {
     fn test(&mut self, p: P<'_>) -> Test {
         let mut c = Cursor::new(p);
         let name = self.ident(&mut c);
-        let mut t =
-            Test { name, run: Vec::new(), seeds: None, sets: Vec::new(), outcome: None, expects: Vec::new() };
+        let mut t = Test {
+            name,
+            run: Vec::new(),
+            seeds: None,
+            sets: Vec::new(),
+            outcome: None,
+            expects: Vec::new(),
+            faults: Vec::new(),
+        };
         while let Some(p) = c.any() {
             let (rule, span) = (p.as_rule(), self.span(&p));
             match rule {
@@ -285,6 +314,7 @@ impl Builder {
                 ),
                 Rule::test_seeds => t.seeds = Some(self.expr_in(&mut Cursor::new(p))),
                 Rule::test_set => t.sets.push(self.constant(p)),
+                Rule::entry => t.faults.push(self.entry(p)),
                 Rule::test_outcome => t.outcome = Some(self.ident(&mut Cursor::new(p))),
                 Rule::test_expect => t.expects.push(self.expr_in(&mut Cursor::new(p))),
                 _ => {}

@@ -4,6 +4,7 @@ mod arguments;
 mod call;
 mod choice;
 mod expr;
+mod govern;
 mod indexed;
 mod lists;
 mod names;
@@ -54,6 +55,10 @@ pub struct AgentScope<'a> {
     pub events: Vec<Name>,
     /// Devices.
     pub devices: Vec<Name>,
+    /// Services, machines and plans.
+    pub units: Vec<Name>,
+    /// Those of them that are offered to the planner-matcher.
+    pub offered: Vec<Name>,
     /// Agent-level `let`s.
     pub lets: BTreeMap<Name, &'a ast::Constant>,
     /// Actions.
@@ -152,6 +157,8 @@ pub struct Checker<'a> {
     pub robots: Indexed<(Name, bool, Vec<u32>)>,
     /// Goals, by name.
     pub goals: Indexed<Name>,
+    /// Goals of the mission with whether they are pursued on request; none without a mission.
+    pub pursuable: Option<Vec<(ast::Ident, bool)>>,
     /// Mission-level constants.
     pub mission_lets: BTreeMap<Name, &'a ast::Constant>,
     /// World regions, by name.

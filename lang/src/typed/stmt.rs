@@ -176,6 +176,7 @@ impl<'a> Checker<'a> {
                 };
                 GStmtKind::Raise(i as u32)
             }
+            StmtKind::Govern(what) => GStmtKind::Govern(self.govern(what)?),
             StmtKind::If(arms, otherwise) => self.if_stmt(arms, otherwise, depth)?,
             StmtKind::Match(x, arms) => self.match_stmt(x, arms, depth)?,
             StmtKind::Rules(rules) => self.rules(rules, depth),

@@ -370,6 +370,10 @@ impl Engine<'_> {
         losers: &mut Losers,
     ) -> Result<Result<Decision, String>, Fault> {
         let now = self.now;
+        let instance = self.cast.of_robot(channel.robot).start as u32 + binding;
+        if self.lives.is_dead(instance) {
+            return Ok(Err(format!("the arbiter {} is dead", self.agent_name(instance))));
+        }
         for &port in &arbiter.requires {
             let sensor = group.agents[binding as usize].sensors[port as usize];
             if let Err(reason) = self.senses.get(channel.robot, sensor, now) {
@@ -414,6 +418,28 @@ impl Engine<'_> {
             (None, None) => Holder::Safe,
         };
         Ok(Ok(Decision { holder, expires: expires.unwrap_or(Time::MAX), again }))
+    }
+
+    /// What an agent has proposed counts no more, and what it is the arbiter of is decided without it.
+    pub(super) fn silence(&mut self, robot: u32, binding: u32) {
+        let group = &self.mission.groups[self.scene.robots[robot as usize].group as usize];
+        let Some(&first) = self.actuators.first.get(robot as usize) else { return };
+        for (c, code) in (first..).zip(&group.channels) {
+            let from = self.actuators.channels[c as usize].proposals;
+            let arbiter = code.arbiter.is_some_and(|(b, _)| b == binding);
+            let mut concerned = arbiter;
+            for (s, source) in code.sources.iter().enumerate() {
+                if source.is_some_and(|(b, _)| b == binding) {
+                    concerned = true;
+                    self.actuators.proposals[from + s].expires = self.now;
+                }
+            }
+            let channel = &mut self.actuators.channels[c as usize];
+            if concerned && channel.holder != Holder::Nobody && !channel.touched {
+                channel.touched = true;
+                self.actuators.touched.push(c);
+            }
+        }
     }
 
     /// Evaluates numbers of an arbiter in the mind of its agent.

@@ -7,6 +7,7 @@ use super::{
     log::{Item, Log},
     post::Letter,
     queue::Scheduled,
+    troubles::Route,
 };
 use crate::{Event, Time, mission::code::TriggerCode};
 use soifra_graph::eval::Fault;
@@ -33,8 +34,11 @@ impl Engine<'_> {
         if outcome.over {
             return;
         }
+        // What was evaluated before its agent died in this wave is lost with it.
+        if !self.reset.is_empty() && self.reset.contains(&self.cast.units[release.unit as usize].instance) {
+            return;
+        }
         let info = self.cast.units[release.unit as usize];
-        let robot = self.cast.instances[info.instance as usize].robot;
         let items = log.items.get(outcome.from as usize..outcome.to as usize).unwrap_or_default();
         if release.finish.is_some() {
             self.commit_answer(release, outcome, items, log);
@@ -48,8 +52,7 @@ impl Engine<'_> {
         }
         let record = self.trace_activation(release, outcome, items, core.is_none().then_some(finish));
         if let Some(fault) = outcome.fault.take() {
-            let (agent, _) = self.names(release.unit);
-            self.fault(Some(robot), &agent, &fault, record);
+            self.unit_fault(release.unit, &fault, record);
             return;
         }
         if outcome.absent.is_none() {
@@ -97,12 +100,7 @@ impl Engine<'_> {
     /// Commits what an anytime service answers.
     fn commit_answer(&mut self, release: &Release, outcome: &mut Outcome, items: &[Item], log: &Log) {
         match outcome.fault.take() {
-            Some(fault) => {
-                let (agent, _) = self.names(release.unit);
-                let info = self.cast.units[release.unit as usize];
-                let robot = self.cast.instances[info.instance as usize].robot;
-                self.fault(Some(robot), &agent, &fault, release.cause);
-            }
+            Some(fault) => self.unit_fault(release.unit, &fault, release.cause),
             None => self.apply_all(release.unit, items, log, release.cause),
         }
     }
@@ -167,7 +165,7 @@ impl Engine<'_> {
                     self.actuators.propose(now, robot, channel, source, command, info.lifetime, cause);
                 }
             }
-            Item::Publish { topic, registers } => self.publish(unit, *topic, log.get(registers), cause),
+            Item::Publish { topic, registers } => self.send_out(unit, *topic, log.get(registers), cause),
             Item::Tell(told) => {
                 let registers = log.get(&told.registers).to_vec();
                 self.tell(unit, told, registers, cause);
@@ -188,6 +186,7 @@ impl Engine<'_> {
                     }
                 }
             }
+            Item::Govern(what) => self.govern(unit, what, cause),
             Item::SetParam { param, registers } => {
                 let registers = log.get(registers).to_vec();
                 let agent = if self.recorder.on() { self.names(unit).0 } else { String::new() };
@@ -211,6 +210,7 @@ impl Engine<'_> {
                     goal: s.name.to_string(),
                     robot: Some(robot),
                     status: word(*status).to_string(),
+                    reason: None,
                 });
             }
             _ => self.trace_item(unit, item, log, cause),
@@ -256,14 +256,15 @@ impl Engine<'_> {
         self.recorder.record(self.now, cause, || event);
     }
 
-    fn publish(&mut self, unit: u32, topic: u32, registers: &[f64], cause: Option<u64>) {
-        let now = self.now;
+    /// Publishes a message, unless a declared fault has something against it.
+    fn send_out(&mut self, unit: u32, topic: u32, registers: &[f64], cause: Option<u64>) {
         let info = self.cast.units[unit as usize];
         let sender = info.instance;
         let robot = self.cast.instances[sender as usize].robot;
         if topic as usize >= self.boards.len() {
             return;
         }
+        let now = self.now;
         let record = if self.recorder.on() {
             let (agent, _) = self.names(unit);
             let topic = self.mission.topics[topic as usize].name.to_string();
@@ -272,6 +273,33 @@ impl Engine<'_> {
         } else {
             None
         };
+        let fate = self.troubles.fate(Route::Topic(topic), self.seed, now, sender);
+        if fate.lost || fate.unreadable {
+            let why = if fate.lost { "lost by a fault" } else { "unreadable by a fault" };
+            let agent = self.agent_name(sender);
+            let topic = self.mission.topics[topic as usize].name.to_string();
+            let (message, dropped) = (record.unwrap_or(0), Some(why.to_string()));
+            self.recorder.record(now, record, || Event::Delivery { robot, agent, topic, message, dropped });
+            return;
+        }
+        for _ in 0..1 + u32::from(fate.twice) {
+            if fate.late > Time::ZERO {
+                let late = Scheduled::Publish { unit, topic, registers: registers.to_vec(), record };
+                self.queue.put(now + fate.late, late);
+            } else {
+                self.publish(unit, topic, registers, record);
+            }
+        }
+    }
+
+    pub(super) fn publish(&mut self, unit: u32, topic: u32, registers: &[f64], record: Option<u64>) {
+        let now = self.now;
+        let info = self.cast.units[unit as usize];
+        let sender = info.instance;
+        let robot = self.cast.instances[sender as usize].robot;
+        if topic as usize >= self.boards.len() {
+            return;
+        }
         let board = &mut self.boards[topic as usize];
         let receivers = &self.subscribers[topic as usize];
         let ranged = board.channel.range.is_some() && !receivers.is_empty();
@@ -388,13 +416,18 @@ impl Engine<'_> {
 
     /// Something went wrong: the run will end with safe actions.
     pub(super) fn fault(&mut self, robot: Option<u32>, agent: &str, fault: &Fault, cause: Option<u64>) {
+        let text = self.fault_text(fault);
+        self.fail(robot, agent, text, cause);
+    }
+
+    /// What went wrong, where, and in which words of the sources.
+    pub(super) fn fault_text(&self, fault: &Fault) -> String {
         let place = self.mission.place(fault.at);
-        let text = match (place.is_empty(), self.mission.written(fault.at)) {
+        match (place.is_empty(), self.mission.written(fault.at)) {
             (true, _) => fault.to_string(),
             (false, "") => format!("{place}: {fault}"),
             (false, code) => format!("{place}: {fault} in `{}`", brief(code)),
-        };
-        self.fail(robot, agent, text, cause);
+        }
     }
 
     /// As [`Engine::fault`], in words.

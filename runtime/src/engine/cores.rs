@@ -93,6 +93,17 @@ impl CoreState {
         self.since = now;
     }
 
+    /// Drops the job of a unit; whether it had one.
+    pub fn drop_unit(&mut self, unit: u32, now: Time) -> bool {
+        self.charge(now);
+        let Some(i) = self.position(unit) else { return false };
+        self.jobs.remove(i);
+        if self.running == Some(unit) {
+            self.running = None;
+        }
+        true
+    }
+
     /// Whether a snapshot of it can be one of this core.
     pub fn fits(&self, units: usize) -> bool {
         self.jobs
@@ -266,7 +277,7 @@ impl Engine<'_> {
             && in_a_row > n
         {
             let text = format!("{name} has missed {in_a_row} deadlines in a row");
-            self.fail(Some(robot), &agent, text, record);
+            self.unit_fails(unit, text, record);
         }
     }
 

@@ -12,11 +12,13 @@ pub(crate) struct Directory {
 }
 
 impl Directory {
-    /// Everybody who offers something at the start.
+    /// Everybody who offers a conversation at the start. What is offered to the planner is registered by
+    /// messages.
     pub fn new(mission: &Mission, cast: &Cast) -> Self {
         let mut d = Directory::default();
         for (i, who) in cast.instances.iter().enumerate() {
-            for offer in &mission.graph.agents[who.agent as usize].offers {
+            let offers = &mission.graph.agents[who.agent as usize].offers;
+            for offer in offers.iter().filter(|o| o.unit.is_none()) {
                 d.register(&offer.name, i as u32);
             }
         }
@@ -29,6 +31,13 @@ impl Directory {
             Some((_, agents)) if agents.contains(&agent) => {}
             Some((_, agents)) => agents.push(agent),
             None => self.services.push((service.clone(), vec![agent])),
+        }
+    }
+
+    /// An agent offers nothing any more.
+    pub fn deregister(&mut self, agent: u32) {
+        for (_, agents) in &mut self.services {
+            agents.retain(|a| *a != agent);
         }
     }
 

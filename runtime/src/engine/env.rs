@@ -167,6 +167,7 @@ impl Env for AgentEnv<'_, '_> {
                 log.items.push(Item::Reply(Box::new(Replied { performative, reason, registers, thread })));
             }
             Effect::Raise(event) => log.items.push(Item::Raise(event)),
+            Effect::Govern(what) => log.items.push(Item::Govern(Box::new(what.clone()))),
             Effect::SetParam { param, registers } => {
                 let registers = log.keep(registers);
                 log.items.push(Item::SetParam { param, registers });

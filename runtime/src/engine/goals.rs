@@ -6,11 +6,14 @@ use super::{
 };
 use crate::{Mission, Scene, Time};
 use serde::{Deserialize, Serialize};
+use soifra_graph::SubGoal;
 
 /// Counts of sub-goals by goal and by robot.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Goals {
     goals: Vec<Count>,
+    /// Of sub-goals that agents are allocated to, by goal.
+    allocated: Vec<Count>,
     robots: Vec<Count>,
     /// When each robot had achieved all its sub-goals for the first time.
     pub reached: Vec<Option<Time>>,
@@ -59,6 +62,7 @@ impl Goals {
     pub fn new(mission: &Mission, scene: &Scene, cast: &Cast) -> Self {
         let mut g = Goals {
             goals: vec![Count::default(); mission.graph.goals.len()],
+            allocated: vec![Count::default(); mission.graph.goals.len()],
             robots: vec![Count::default(); scene.robots.len()],
             reached: vec![None; scene.robots.len()],
             traced: vec![ACTIVE; mission.graph.goals.len()],
@@ -73,7 +77,8 @@ impl Goals {
         // A goal with a sub-goal that nobody pursues is never achieved.
         for (count, goal) in g.goals.iter_mut().zip(&mission.graph.goals) {
             let pursued = |agent: u32| cast.instances.iter().any(|i| i.agent == agent);
-            count.all += goal.subgoals.iter().filter(|s| !pursued(s.agent)).count() as u32;
+            let by_nobody = |s: &&SubGoal| s.agent.is_some_and(|a| !pursued(a));
+            count.all += goal.subgoals.iter().filter(by_nobody).count() as u32;
         }
         g
     }
@@ -81,7 +86,8 @@ impl Goals {
     /// Whether these are counts of as many goals and robots.
     pub fn fits(&self, other: &Goals) -> bool {
         let all = |counts: &[Count]| counts.iter().map(|c| c.all).collect::<Vec<_>>();
-        let shape = |g: &Goals| (all(&g.goals), all(&g.robots), g.reached.len(), g.traced.len());
+        let shape =
+            |g: &Goals| (all(&g.goals), all(&g.robots), g.allocated.len(), g.reached.len(), g.traced.len());
         shape(self) == shape(other)
     }
 
@@ -96,9 +102,24 @@ impl Goals {
         self.changed = true;
     }
 
+    /// How many sub-goals of each goal are allocated: all, achieved, failed.
+    pub fn set_allocated(&mut self, counts: &[[u32; 3]]) {
+        for (count, [all, achieved, failed]) in self.allocated.iter_mut().zip(counts) {
+            *count = Count { all: *all, achieved: *achieved, failed: *failed };
+        }
+        self.changed = true;
+    }
+
+    /// All sub-goals of a goal.
+    fn whole(&self, goal: usize) -> Option<Count> {
+        let (a, b) = (self.goals.get(goal)?, self.allocated.get(goal)?);
+        let sum = |f: fn(&Count) -> u32| f(a) + f(b);
+        Some(Count { all: sum(|c| c.all), achieved: sum(|c| c.achieved), failed: sum(|c| c.failed) })
+    }
+
     /// Whether a goal is achieved.
     pub fn achieved(&self, goal: u32) -> Option<bool> {
-        self.goals.get(goal as usize).map(|c| c.status() == ACHIEVED)
+        self.whole(goal as usize).map(|c| c.status() == ACHIEVED)
     }
 
     /// Whether a robot believes that it has achieved all its sub-goals.
@@ -108,7 +129,7 @@ impl Goals {
 
     /// Status of a goal, in words.
     pub fn status(&self, goal: usize) -> &'static str {
-        self.goals.get(goal).map_or("active", |c| word(c.status()))
+        self.whole(goal).map_or("active", |c| word(c.status()))
     }
 
     /// Goals whose status has changed since they were asked for last.
@@ -117,9 +138,11 @@ impl Goals {
             return Vec::new();
         }
         let mut out = Vec::new();
-        for (i, (count, traced)) in self.goals.iter().zip(&mut self.traced).enumerate() {
-            if count.status() != *traced {
-                *traced = count.status();
+        for i in 0..self.traced.len() {
+            let status = self.whole(i).map_or(ACTIVE, |c| c.status());
+            let traced = &mut self.traced[i];
+            if status != *traced {
+                *traced = status;
                 out.push((i, word(*traced)));
             }
         }

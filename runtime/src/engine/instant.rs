@@ -15,6 +15,9 @@ use std::sync::{Arc, atomic::Ordering};
 /// The fewest activations at one instant that are too many.
 const TOO_MANY: usize = 1_000_000;
 
+/// Who subscribes to a parameter hears of a change after this time.
+const HEARD: Time = Time(1_000);
+
 /// Nothing happens for longer than this only where it is asked whether the run is to stop.
 const IDLE: Time = Time(60_000_000_000);
 
@@ -27,6 +30,9 @@ pub(super) struct End {
 impl Engine<'_> {
     /// Runs to the end.
     pub fn run(mut self) -> RunReport {
+        if !self.resumed {
+            self.open_planner();
+        }
         let end = loop {
             // The instant of a snapshot is over.
             if !std::mem::take(&mut self.resumed) {
@@ -117,6 +123,14 @@ impl Engine<'_> {
                 captured: r.captured,
                 registers: registers.to_vec(),
             });
+            let altered;
+            let registers = if self.troubles_sensors() {
+                let Some(left) = self.troubled(r.robot, r.sensor, registers, record) else { continue };
+                altered = left;
+                altered.as_slice()
+            } else {
+                registers
+            };
             if self.senses.take(r, registers, record.unwrap_or(0))
                 && let Some(units) = self.on_reading.get(&(r.robot, r.sensor))
             {
@@ -200,6 +214,14 @@ impl Engine<'_> {
                 }
                 Scheduled::DeviceFree { device, by } => self.device_free(device, by),
                 Scheduled::Utter(u) => self.hear(u),
+                Scheduled::Notice(notice) => self.notice(*notice),
+                Scheduled::Kill(instance) => self.kill(instance, "killed by a declared fault", None),
+                Scheduled::Heard(unit) => self.admit(unit, None),
+                Scheduled::Post(goal) => self.post_goal(&goal),
+                Scheduled::Publish { unit, topic, registers, record } => {
+                    self.publish(unit, topic, &registers, record);
+                }
+                Scheduled::PeerGone { branch, side, record } => self.peer_gone(branch, side, record),
                 Scheduled::Patience { branch, by, entry } => self.patience(branch, by, entry),
                 Scheduled::Late { unit, release } => self.admit_since(unit, release, None),
                 Scheduled::Core { core, version } => self.core_due(core, version),
@@ -236,6 +258,11 @@ impl Engine<'_> {
 
     /// Puts a letter into a mailbox, whose oldest is lost when it is full.
     pub(super) fn put_letter(&mut self, unit: u32, letter: Arc<Letter>, record: Option<u64>) {
+        if !self.lives.is_on(unit) {
+            let dead = self.lives.is_dead(self.cast.units[unit as usize].instance);
+            self.trace_delivery(unit, &letter, Some(if dead { "the agent is dead" } else { "it does not run" }));
+            return;
+        }
         if let Some(oldest) = self.mail.put(unit, Delivered { letter, record }) {
             self.trace_delivery(unit, &oldest.letter, Some("the mailbox is full"));
         }
@@ -287,6 +314,9 @@ impl Engine<'_> {
 
     /// As [`Engine::admit`], for one that was to be released at `release`.
     fn admit_since(&mut self, unit: u32, release: Time, cause: Option<u64>) {
+        if !self.lives.is_on(unit) {
+            return;
+        }
         let Some(free) = self.blocked(unit) else {
             self.release(unit, release, cause, None);
             return;
@@ -419,13 +449,25 @@ impl Engine<'_> {
                     self.commit(release, outcome, &desk.log);
                 }
             }
-            for (param, registers) in std::mem::take(&mut self.new_params) {
-                if let Some(range) = self.mission.params.range(param as usize)
+            self.reset.clear();
+            let new = std::mem::take(&mut self.new_params);
+            let mut heard: Vec<u32> = Vec::new();
+            for (param, registers) in &new {
+                heard.extend(self.on_param.get(param).into_iter().flatten());
+                if let Some(range) = self.mission.params.range(*param as usize)
                     && let Some(slot) = self.params.get_mut(range)
                     && slot.len() == registers.len()
                 {
-                    slot.copy_from_slice(&registers);
+                    slot.copy_from_slice(registers);
                 }
+            }
+            heard.sort_unstable();
+            heard.dedup();
+            for unit in heard {
+                self.queue.put(self.now + HEARD, Scheduled::Heard(unit));
+            }
+            if !new.is_empty() {
+                self.params_changed(None);
             }
             self.workers = workers;
             self.outcomes = outcomes;
@@ -519,7 +561,12 @@ impl Engine<'_> {
         for (goal, status) in self.goals.changes() {
             let name = self.mission.graph.goals[goal].name.to_string();
             let status = status.to_string();
-            self.recorder.record(now, None, || Event::Goal { goal: name, robot: None, status });
+            self.recorder.record(now, None, || Event::Goal {
+                goal: name,
+                robot: None,
+                status,
+                reason: None,
+            });
         }
         self.judge_expectations(now, Occasion::Instant);
         let mut frame = std::mem::take(&mut self.judge.frame);

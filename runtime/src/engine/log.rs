@@ -2,7 +2,7 @@
 
 use crate::nodes::Ended;
 use serde::{Deserialize, Serialize};
-use soifra_graph::{Name, Span};
+use soifra_graph::{Govern, Name, Span};
 use std::ops::Range;
 
 /// Something an activation did, in order. Ranges are registers of the log.
@@ -18,6 +18,7 @@ pub(crate) enum Item {
     },
     Tell(Box<Told>),
     Raise(u32),
+    Govern(Box<Govern>),
     Use {
         device: u32,
         seconds: f64,
@@ -141,6 +142,7 @@ impl Item {
                 | Item::Publish { .. }
                 | Item::Tell(_)
                 | Item::Raise(_)
+                | Item::Govern(_)
                 | Item::Use { .. }
                 | Item::Open(_)
                 | Item::Reply(_)

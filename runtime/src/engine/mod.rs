@@ -23,8 +23,10 @@ mod goals;
 mod grid;
 mod instant;
 mod judge;
+mod lives;
 mod log;
 mod minds;
+mod planner;
 mod post;
 mod queue;
 mod recorder;
@@ -34,6 +36,7 @@ mod senses;
 mod setup;
 pub(crate) mod snapshot;
 mod talks;
+mod troubles;
 mod verdict;
 mod work;
 
@@ -50,7 +53,9 @@ use devices::DeviceState;
 use directory::Directory;
 use goals::Goals;
 use judge::Judge;
+use lives::Lives;
 use minds::Minds;
+use planner::Planner;
 use post::Mail;
 use queue::Queue;
 use recorder::Recorder;
@@ -59,9 +64,13 @@ pub use report::{Outcome, RunReport};
 use senses::Senses;
 use serde::{Deserialize, Serialize};
 pub use snapshot::Snapshot;
-use soifra_graph::Texts;
-use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+use soifra_graph::{Texts, planning::Pool};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::atomic::AtomicBool,
+};
 use talks::Talks;
+use troubles::Troubles;
 
 /// One run of a mission.
 pub struct Engine<'m> {
@@ -107,6 +116,17 @@ pub struct Engine<'m> {
     /// Of each declared conversation.
     channels: Vec<TalkChannel>,
     directory: Directory,
+    /// Who could serve sub-goals.
+    pool: Pool,
+    planner: Planner,
+    lives: Lives,
+    /// How often each agent may fail within how long.
+    restarts: Vec<Option<(u32, Time)>>,
+    /// Agents that died during the present wave: what they evaluated in it does not count.
+    reset: BTreeSet<u32>,
+    troubles: Troubles,
+    /// Units that a parameter sets off.
+    on_param: BTreeMap<u32, Vec<u32>>,
     queue: Queue,
     actuators: Actuators,
     contacts: Contacts,

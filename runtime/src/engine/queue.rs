@@ -4,6 +4,7 @@ use super::{
     cast::Timer,
     devices::DeviceUse,
     log::{Item, Log},
+    planner::Notice,
     post::Letter,
     talks::Utterance,
 };
@@ -37,6 +38,18 @@ pub(crate) enum Scheduled {
     Core { core: u32, version: u64 },
     /// A unit is to be done by now.
     Deadline { unit: u32, release: Time },
+    /// A message between planner, directory and agents.
+    Notice(Box<Notice>),
+    /// A declared fault kills an agent.
+    Kill(u32),
+    /// A unit hears that a parameter has changed.
+    Heard(u32),
+    /// Somebody outside asks for a goal.
+    Post(String),
+    /// A message that a declared fault has delayed is published.
+    Publish { unit: u32, topic: u32, registers: Vec<f64>, record: Option<u64> },
+    /// A side of a conversation learns that the other is dead.
+    PeerGone { branch: u64, side: Role, record: Option<u64> },
 }
 
 /// The future.
@@ -69,8 +82,8 @@ impl Queue {
         }
     }
 
-    /// Takes up the future of a run of the same mission with so many units and cores; false when it is none.
-    pub fn resume(&mut self, agenda: Agenda, units: usize, cores: usize) -> bool {
+    /// Takes up the future of a run of the same mission with so many agents, units and cores; false when it is none.
+    pub fn resume(&mut self, agenda: Agenda, [instances, units, cores]: [usize; 3]) -> bool {
         let known = |u: &u32| (*u as usize) < units;
         let fits = agenda.timers.len() == self.timers.len()
             && agenda.scheduled.iter().all(|(_, n, what)| {
@@ -83,7 +96,13 @@ impl Queue {
                         Scheduled::Wake(unit)
                         | Scheduled::Late { unit, .. }
                         | Scheduled::Deadline { unit, .. } => known(unit),
-                        Scheduled::Utter(_) | Scheduled::Patience { .. } => true,
+                        Scheduled::Publish { unit, .. } | Scheduled::Heard(unit) => known(unit),
+                        Scheduled::Kill(instance) => (*instance as usize) < instances,
+                        Scheduled::Notice(notice) => notice.fits(instances),
+                        Scheduled::Utter(_)
+                        | Scheduled::Patience { .. }
+                        | Scheduled::Post(_)
+                        | Scheduled::PeerGone { .. } => true,
                         Scheduled::DeviceFree { by, .. } => by.fits(units),
                         Scheduled::Core { core, .. } => (*core as usize) < cores,
                     }
@@ -109,6 +128,18 @@ impl Queue {
     pub fn put(&mut self, at: Time, what: Scheduled) {
         self.scheduled.insert((at, self.count), what);
         self.count += 1;
+    }
+
+    /// What was put off for some units is not to happen; messages to them are.
+    pub fn drop_units(&mut self, units: &std::ops::Range<u32>) {
+        self.scheduled.retain(|_, what| match what {
+            Scheduled::Outputs { unit, .. }
+            | Scheduled::Wake(unit)
+            | Scheduled::Late { unit, .. }
+            | Scheduled::Deadline { unit, .. } => !units.contains(unit),
+            Scheduled::DeviceFree { by, .. } => !units.contains(&by.unit),
+            _ => true,
+        });
     }
 
     /// When something happens next.

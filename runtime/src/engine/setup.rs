@@ -13,13 +13,16 @@ use super::{
     directory::Directory,
     goals::Goals,
     judge::{Judge, Watch},
+    lives::Lives,
     minds::Minds,
+    planner::Planner,
     post::Mail,
     queue::Queue,
     recorder::Recorder,
     regions::Regions,
     senses::Senses,
     talks::Talks,
+    troubles::Troubles,
     verdict::Track,
 };
 use crate::{
@@ -31,8 +34,11 @@ use crate::{
         uses::Uses,
     },
 };
-use soifra_graph::{Diagnostic, eval::Block};
-use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+use soifra_graph::{Diagnostic, eval::Block, planning::Pool};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::atomic::AtomicBool,
+};
 
 /// A message takes at least this long.
 const LEAST_DELAY: Time = Time(1_000);
@@ -74,11 +80,16 @@ impl<'m> Engine<'m> {
         };
         let judge = judge(mission, scene, &mut start, truth)?;
         let goals = Goals::new(mission, scene, &cast);
-        let (subscribers, on_reading) = receivers(mission, scene, &cast);
+        let (subscribers, on_reading, on_param) = receivers(mission, scene, &cast);
         let channels = talk_channels(mission, &mut start)?;
         let minds = Minds::new(&cast);
+        let groups: Vec<u32> = scene.robots.iter().map(|r| r.group).collect();
+        let pool = Pool::new(&mission.graph, &groups);
+        let troubles = Troubles::new(mission, scene)?;
+        let restarts = restarts(mission, &cast, &mut start)?;
+        let units = cast.units.len();
         let frame = mission.frame.max(1);
-        Ok(Engine {
+        let mut engine = Engine {
             mission,
             scene,
             platform,
@@ -109,6 +120,13 @@ impl<'m> Engine<'m> {
             ended: Vec::new(),
             channels,
             directory: Directory::new(mission, &cast),
+            pool,
+            planner: Planner::new(mission),
+            lives: Lives::default(),
+            restarts,
+            reset: BTreeSet::new(),
+            troubles,
+            on_param,
             queue,
             actuators,
             contacts: Contacts::new(scene.robots.len()),
@@ -127,8 +145,27 @@ impl<'m> Engine<'m> {
             desk: Desk { frame: vec![0.0; frame], ..Desk::default() },
             events: 0,
             cast,
-        })
+        };
+        engine.lives = Lives::new((0..units as u32).map(|u| engine.starts_on(u)).collect());
+        engine.schedule_faults()?;
+        Ok(engine)
     }
+}
+
+/// How often each agent may fail within how long.
+fn restarts(
+    mission: &Mission,
+    cast: &Cast,
+    start: &mut Start<'_>,
+) -> Result<Vec<Option<(u32, Time)>>, Diagnostic> {
+    let mut out = Vec::new();
+    for who in &cast.instances {
+        out.push(match &mission.agents[who.agent as usize].restart {
+            Some((times, within)) => Some((*times, seconds(start, Some(within))?.unwrap_or_default())),
+            None => None,
+        });
+    }
+    Ok(out)
 }
 
 fn seconds(start: &mut Start<'_>, block: Option<&Block>) -> Result<Option<Time>, Diagnostic> {
@@ -274,11 +311,12 @@ fn judge(mission: &Mission, scene: &Scene, start: &mut Start<'_>, truth: bool) -
 }
 
 type OnReading = BTreeMap<(u32, u32), Vec<u32>>;
+type OnParam = BTreeMap<u32, Vec<u32>>;
 
-/// Units that messages and readings set off.
-fn receivers(mission: &Mission, scene: &Scene, cast: &Cast) -> (Vec<Vec<u32>>, OnReading) {
+/// Units that messages, readings and parameters set off.
+fn receivers(mission: &Mission, scene: &Scene, cast: &Cast) -> (Vec<Vec<u32>>, OnReading, OnParam) {
     let mut subscribers = vec![Vec::new(); mission.topics.len()];
-    let mut on_reading = OnReading::new();
+    let (mut on_reading, mut on_param) = (OnReading::new(), OnParam::new());
     for (u, info) in cast.units.iter().enumerate() {
         let who = &cast.instances[info.instance as usize];
         let group = &mission.groups[scene.robots[who.robot as usize].group as usize];
@@ -288,8 +326,9 @@ fn receivers(mission: &Mission, scene: &Scene, cast: &Cast) -> (Vec<Vec<u32>>, O
                 let sensor = group.agents[who.binding as usize].sensors[*port as usize];
                 on_reading.entry((who.robot, sensor)).or_default().push(u as u32);
             }
+            TriggerCode::Param(p) => on_param.entry(*p).or_default().push(u as u32),
             _ => {}
         }
     }
-    (subscribers, on_reading)
+    (subscribers, on_reading, on_param)
 }

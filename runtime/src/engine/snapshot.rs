@@ -10,7 +10,9 @@ use super::{
     devices::DeviceState,
     directory::Directory,
     goals::Goals,
+    lives::Lives,
     minds::Minds,
+    planner::Planner,
     post::Mail,
     queue::Agenda,
     senses::Senses,
@@ -40,6 +42,8 @@ pub struct Snapshot {
     mail: Mail,
     talks: Talks,
     directory: Directory,
+    lives: Lives,
+    planner: Planner,
     agenda: Agenda,
     actuators: Actuators,
     contacts: Contacts,
@@ -87,6 +91,8 @@ impl Engine<'_> {
                 mail: self.mail.clone(),
                 talks: self.talks.clone(),
                 directory: self.directory.clone(),
+                lives: self.lives.clone(),
+                planner: self.planner.clone(),
                 agenda: self.queue.agenda(),
                 actuators: self.actuators.clone(),
                 contacts: self.contacts.clone(),
@@ -120,13 +126,15 @@ impl Engine<'_> {
             && s.mail.fits(units)
             && s.talks.fits(self.cast.instances.len(), &states)
             && s.directory.fits(self.cast.instances.len())
+            && s.lives.fits(self.cast.instances.len(), units)
+            && s.planner.fits(&self.planner, &self.pool)
             && s.actuators.fits(&self.actuators)
             && s.contacts.fits(&self.contacts)
             && s.goals.fits(&self.goals)
             && counts(&s.tracks) == counts(&tracks)
             && s.poses.len() == self.poses.len();
         if !fits
-            || !self.queue.resume(s.agenda, units, s.cores.len())
+            || !self.queue.resume(s.agenda, [self.cast.instances.len(), units, s.cores.len()])
             || !self.boards.iter_mut().zip(s.boards).all(|(board, kept)| board.resume(kept))
         {
             return false;
@@ -136,6 +144,7 @@ impl Engine<'_> {
         (self.tallies, self.cores) = (s.tallies, s.cores);
         self.devices = s.devices;
         (self.talks, self.directory) = (s.talks, s.directory);
+        (self.lives, self.planner) = (s.lives, s.planner);
         (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);
         (self.poses, self.movers) = (s.poses, s.movers.into_iter().collect());

@@ -4,7 +4,7 @@
 //! that it does not have in the receiver's state is not handed over and answered with `not_understood`. A side
 //! that waits longer than the protocol says goes where the time-out leads; what comes after that is dropped.
 
-use super::{Engine, log::Opened, post::Letter, queue::Scheduled};
+use super::{Engine, log::Opened, post::Letter, queue::Scheduled, troubles::Route};
 use crate::{
     Event, Thread, Time,
     mission::code::{TalkCode, TriggerCode},
@@ -35,6 +35,8 @@ pub(super) struct Branch {
     heard: [Option<String>; 2],
     /// Messages that have not arrived yet.
     under_way: u32,
+    /// Sides whose agent has died.
+    gone: [bool; 2],
 }
 
 /// What was opened with one message.
@@ -68,6 +70,9 @@ pub(crate) struct Utterance {
     pub registers: Vec<f64>,
     /// Its record.
     pub record: u64,
+    /// A fault has made its content unreadable.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub unreadable: bool,
 }
 
 /// What is said.
@@ -133,6 +138,7 @@ impl Engine<'_> {
                     said: [0, 0],
                     heard: [None, None],
                     under_way: 0,
+                    gone: [false, false],
                 },
             );
             let limit = opened.within.and_then(Time::from_seconds);
@@ -252,15 +258,21 @@ impl Engine<'_> {
             reply_with,
             registers: registers.to_vec(),
             record: record.unwrap_or(0),
+            unreadable: false,
         };
-        if lost {
-            self.trace_utterance(&utterance, to, Some("lost on the way"));
+        let fate = self.troubles.fate(Route::Talk(conversation), self.seed, self.now, from);
+        if lost || fate.lost {
+            let why = if lost { "lost on the way" } else { "lost by a fault" };
+            self.trace_utterance(&utterance, to, Some(why));
             self.ended.push(number);
-        } else {
+            return;
+        }
+        let utterance = Utterance { unreadable: fate.unreadable, ..utterance };
+        for _ in 0..1 + u32::from(fate.twice) {
             if let Some(b) = self.talks.branches.get_mut(&number) {
                 b.under_way += 1;
             }
-            self.queue.put(self.now + delay, Scheduled::Utter(utterance));
+            self.queue.put(self.now + delay + fate.late, Scheduled::Utter(utterance.clone()));
         }
     }
 
@@ -314,7 +326,8 @@ impl Engine<'_> {
             let c = &self.mission.graph.conversations[b.conversation as usize];
             let over = |s: u32| c.states[s as usize].is_final();
             let unaware = b.entries[Role::Participant.index()] == 0;
-            if b.under_way == 0 && over(b.states[0]) && (unaware || over(b.states[1])) {
+            let left = |side: usize| b.gone[side] || over(b.states[side]);
+            if b.under_way == 0 && left(0) && (unaware || left(1)) {
                 self.talks.branches.remove(&number);
             }
         }
@@ -328,11 +341,23 @@ impl Engine<'_> {
         self.ended.push(u.branch);
         let (conversation, peers) = (b.conversation, b.peers);
         let me = peers[side.index()];
+        if b.gone[side.index()] || self.lives.is_dead(me) {
+            b.gone[side.index()] = true;
+            self.trace_utterance(&u, me, Some("the agent is dead"));
+            self.announce_gone(u.branch, side, Some(u.record));
+            return;
+        }
+        // The same message once more says nothing new.
+        if b.heard[side.index()].as_ref() == Some(&u.reply_with) {
+            self.trace_utterance(&u, me, Some("a duplicate"));
+            return;
+        }
         let c = &self.mission.graph.conversations[conversation as usize];
         let state = &c.states[b.states[side.index()] as usize];
-        let Some(m) = state.move_of(u.by, &u.performative) else {
+        let Some(m) = state.move_of(u.by, &u.performative).filter(|_| !u.unreadable) else {
             let why = match state.is_final() {
                 true => "the conversation is over".to_string(),
+                false if u.unreadable => "unreadable".to_string(),
                 false => format!("unexpected in state {}", state.name),
             };
             let over = state.is_final();
@@ -362,10 +387,90 @@ impl Engine<'_> {
         self.deliver_talk(me, conversation, envelope, &what, letter, record);
     }
 
+    /// An agent that has died says nothing any more; whom it was talking with learns that from its platform.
+    pub(super) fn leave_talks(&mut self, instance: u32, cause: Option<u64>) {
+        let all = self.talks.branches.iter();
+        let of: Vec<(u64, Role)> = all
+            .flat_map(|(n, b)| [(*n, Role::Initiator, b.peers[0]), (*n, Role::Participant, b.peers[1])])
+            .filter(|(_, _, peer)| *peer == instance)
+            .map(|(n, side, _)| (n, side))
+            .collect();
+        for (number, side) in of {
+            if let Some(b) = self.talks.branches.get_mut(&number) {
+                b.gone[side.index()] = true;
+                self.ended.push(number);
+                self.announce_gone(number, side, cause);
+            }
+        }
+    }
+
+    /// The platform of a dead agent tells the other side, after the delay of a message.
+    fn announce_gone(&mut self, number: u64, side: Role, cause: Option<u64>) {
+        let Some(b) = self.talks.branches.get_mut(&number) else { return };
+        let c = &self.mission.graph.conversations[b.conversation as usize];
+        let other = side.other().index();
+        if b.gone[other] || c.states[b.states[other] as usize].is_final() || b.entries[other] == 0 {
+            return;
+        }
+        b.under_way += 1;
+        let (peer, dead, id) = (b.peers[other], b.peers[side.index()], b.id.clone());
+        let delay = self.channels[b.conversation as usize].delay;
+        let record = if self.recorder.on() {
+            let thread = Thread {
+                conversation_id: Some(id),
+                protocol: Some(c.protocol.to_string()),
+                ontology: Some(c.ontology.to_string()),
+                ..Thread::default()
+            };
+            let event = Event::Acl {
+                robot: self.cast.instances[dead as usize].robot,
+                performative: "failure".into(),
+                sender: self.agent_name(dead),
+                receiver: self.agent_name(peer),
+                content: None,
+                registers: Vec::new(),
+                reason: Some("the agent is dead".into()),
+                thread: Box::new(thread),
+            };
+            self.recorder.record(self.now, cause, || event)
+        } else {
+            None
+        };
+        self.queue.put(self.now + delay, Scheduled::PeerGone { branch: number, side, record });
+    }
+
+    /// A side learns that the other is dead: as a failure where its protocol has one, else it is over for it.
+    pub(super) fn peer_gone(&mut self, number: u64, dead: Role, record: Option<u64>) {
+        let Some(b) = self.talks.branches.get_mut(&number) else { return };
+        b.under_way = b.under_way.saturating_sub(1);
+        self.ended.push(number);
+        let side = dead.other();
+        let c = &self.mission.graph.conversations[b.conversation as usize];
+        let state = &c.states[b.states[side.index()] as usize];
+        if b.gone[side.index()] || state.is_final() {
+            return;
+        }
+        let (me, peer, conversation) = (b.peers[side.index()], b.peers[dead.index()], b.conversation);
+        let failure = state.move_of(dead, "failure").filter(|m| m.content.is_none());
+        if let Some(target) = failure.map(|m| m.target) {
+            self.enter(number, side, target, None, record);
+            let what = TalkCode::Message("failure".into());
+            let letter = ("failure".to_string(), Vec::new(), record.unwrap_or(0));
+            let envelope = [f64::from(peer), number as f64];
+            self.deliver_talk(me, conversation, envelope, &what, letter, record);
+            return;
+        }
+        let over = c.states.iter().position(|s| s.is_final()).map(|s| s as u32);
+        match over {
+            Some(state) => self.enter(number, side, state, None, record),
+            None => b.gone[side.index()] = true,
+        }
+    }
+
     /// A side has waited long enough.
     pub(super) fn patience(&mut self, number: u64, side: Role, entry: u32) {
         let Some(b) = self.talks.branches.get(&number) else { return };
-        if b.entries[side.index()] != entry {
+        if b.entries[side.index()] != entry || b.gone[side.index()] {
             return;
         }
         let (conversation, peers) = (b.conversation, b.peers);

@@ -12,6 +12,10 @@ pub(crate) struct AgentCode {
     /// Initial value of each state; they read arguments and parameters.
     pub initial: Vec<Block>,
     pub units: Vec<UnitCode>,
+    /// Conditions of its offers, in their order.
+    pub offers: Vec<OfferCode>,
+    /// How often it may fail within how long.
+    pub restart: Option<(u32, Block)>,
     pub arbiters: Vec<ArbiterCode>,
     /// Sub-goals it pursues, in the order of the goals.
     pub subgoals: Vec<SubgoalCode>,
@@ -19,6 +23,12 @@ pub(crate) struct AgentCode {
     pub nodes: usize,
     /// Registers of the largest frame of its units and arbiters.
     pub frame: usize,
+}
+
+/// Something an agent offers.
+pub(crate) struct OfferCode {
+    /// When it agrees to be engaged.
+    pub when: Option<Block>,
 }
 
 /// A sub-goal from the side of the agent.
@@ -66,6 +76,7 @@ pub(crate) enum TriggerCode {
     Talk { conversation: u32, what: TalkCode },
     Reading(u32),
     Event(u32),
+    Param(u32),
 }
 
 /// What of a conversation sets a unit off.
@@ -267,6 +278,8 @@ pub(crate) struct SceneCode {
     pub platforms: Vec<Vec<ComponentCode>>,
     /// Of each group.
     pub robots: Vec<RobotCode>,
+    /// Of each declared fault.
+    pub faults: Vec<ComponentCode>,
 }
 
 pub(crate) struct ComponentCode {
@@ -279,4 +292,14 @@ pub(crate) struct RobotCode {
     pub start: Block,
     pub scatter: Option<Block>,
     pub target: Option<Block>,
+}
+
+impl UnitCode {
+    /// Its nodes in the plan memory of its agent.
+    pub fn nodes(&self) -> std::ops::Range<usize> {
+        match &self.kind {
+            KindCode::Plan(p) => p.nodes_at..p.nodes_at + p.tree.len(),
+            _ => 0..0,
+        }
+    }
 }

@@ -74,6 +74,8 @@ pub(super) fn agent(
         states: Layout::states(&graph.types, agent),
         initial: Vec::new(),
         units: Vec::new(),
+        offers: Vec::new(),
+        restart: None,
         arbiters: Vec::new(),
         subgoals: Vec::new(),
         nodes: 0,
@@ -87,7 +89,7 @@ pub(super) fn agent(
         }
     }
     for (g, goal) in graph.goals.iter().enumerate() {
-        for s in goal.subgoals.iter().filter(|s| s.agent == index) {
+        for s in goal.subgoals.iter().filter(|s| s.agent == Some(index)) {
             let register = |e: &Expr| match e.op {
                 Op::State(i) => code.states.range(i as usize).map(|r| r.start),
                 _ => None,
@@ -110,6 +112,18 @@ pub(super) fn agent(
                 |u: &Unit| matches!(&u.kind, UnitKind::Plan { subgoal: Some(n), .. } if *n == s.name);
             let plan = agent.units.iter().position(is_plan).map(|u| u as u32);
             code.subgoals.push(SubgoalCode { goal: g as u32, name: s.name.clone(), achieved, plan });
+        }
+    }
+    for o in &agent.offers {
+        match o.when.as_ref().map(|e| alone_as(c, e, &[], &Type::Bool)).transpose() {
+            Ok(when) => code.offers.push(OfferCode { when }),
+            Err(e) => keep(e),
+        }
+    }
+    if let Some(r) = &agent.restart {
+        match alone(c, &r.within, &[]) {
+            Ok(within) => code.restart = Some((r.times, within)),
+            Err(e) => keep(e),
         }
     }
     for (u, unit_) in agent.units.iter().enumerate() {
@@ -292,7 +306,8 @@ fn trigger(
         }
         Trigger::Reading(p) if (*p as usize) < agent.sensors.len() => (TriggerCode::Reading(*p), None),
         Trigger::Event(e) if (*e as usize) < agent.events.len() => (TriggerCode::Event(*e), None),
-        Trigger::Reading(_) | Trigger::Event(_) => return damaged(unit.span, "a trigger does not exist"),
+        Trigger::Param(p) if (*p as usize) < graph.params.len() => (TriggerCode::Param(*p), None),
+        Trigger::Reading(_) | Trigger::Event(_) | Trigger::Param(_) => return damaged(unit.span, "a trigger does not exist"),
     })
 }
 

@@ -14,8 +14,8 @@ use code::{AgentCode, GroupCode, JudgeCode, SceneCode, TalkChannelCode, TopicCod
 use compile::Compiled;
 pub use scene::MAX_INSTANCES;
 use soifra_graph::{
-    Diagnostic, Graph, Span, Texts, Value,
-    eval::{CompileError, Compiler, Layout, Program},
+    Diagnostic, Graph, Span, Texts, Type, Value,
+    eval::{Block, CompileError, Compiler, Layout, Program},
 };
 use std::collections::BTreeMap;
 
@@ -50,6 +50,8 @@ pub struct Mission {
     pub(crate) groups: Vec<GroupCode>,
     pub(crate) topics: Vec<TopicCode>,
     pub(crate) talks: Vec<TalkChannelCode>,
+    /// When each plan of the library holds.
+    pub(crate) plans: Vec<Option<Block>>,
     pub(crate) judge: JudgeCode,
     pub(crate) scene: SceneCode,
 }
@@ -66,7 +68,7 @@ impl Mission {
         let parts = compile(&mut compiler, &graph, &mut errors);
         let program = compiler.finish();
         match parts {
-            Some((agents, groups, topics, talks, judge, scene)) if errors.is_empty() => {
+            Some(Parts { agents, groups, topics, talks, plans, judge, scene }) if errors.is_empty() => {
                 let params = Layout::params(&graph);
                 let frame = agents.iter().map(|a| a.frame).max().unwrap_or(0);
                 Ok(Mission {
@@ -79,6 +81,7 @@ impl Mission {
                     groups,
                     topics,
                     talks,
+                    plans,
                     judge,
                     scene,
                 })
@@ -116,7 +119,15 @@ impl Mission {
     }
 }
 
-type Parts = (Vec<AgentCode>, Vec<GroupCode>, Vec<TopicCode>, Vec<TalkChannelCode>, JudgeCode, SceneCode);
+struct Parts {
+    agents: Vec<AgentCode>,
+    groups: Vec<GroupCode>,
+    topics: Vec<TopicCode>,
+    talks: Vec<TalkChannelCode>,
+    plans: Vec<Option<Block>>,
+    judge: JudgeCode,
+    scene: SceneCode,
+}
 
 fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) -> Option<Parts> {
     fn keep<T>(result: Compiled<T>, errors: &mut Vec<CompileError>) -> Option<T> {
@@ -132,10 +143,14 @@ fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) 
     let groups = graph.robots.iter().map(|r| keep(group::group(c, graph, r), errors)).collect::<Vec<_>>();
     let topics = graph.topics.iter().map(|t| keep(topic(c, graph, t), errors)).collect::<Vec<_>>();
     let talks = graph.conversations.iter().map(|t| keep(talk(c, t), errors)).collect::<Vec<_>>();
+    let plan = |c: &mut Compiler<'_>, p: &soifra_graph::LibraryPlan| {
+        p.when.as_ref().map(|e| compile::alone_as(c, e, &[], &Type::Bool)).transpose()
+    };
+    let plans = graph.plans.iter().map(|p| keep(plan(c, p), errors)).collect::<Vec<_>>();
     let judge = keep(judge::judge(c, graph), errors);
     let scene = keep(scene::compile(c, graph), errors);
     for s in graph.goals.iter().flat_map(|g| &g.subgoals) {
-        if s.agent as usize >= graph.agents.len() {
+        if s.agent.is_some_and(|a| a as usize >= graph.agents.len()) {
             errors.push(CompileError {
                 text: "a sub-goal names an agent that does not exist".into(),
                 at: s.at,
@@ -146,7 +161,16 @@ fn compile(c: &mut Compiler<'_>, graph: &Graph, errors: &mut Vec<CompileError>) 
         (agents.into_iter().collect(), groups.into_iter().collect());
     let topics: Option<Vec<_>> = topics.into_iter().collect();
     let talks: Option<Vec<_>> = talks.into_iter().collect();
-    Some((agents?, groups?, topics?, talks?, judge?, scene?))
+    let plans: Option<Vec<_>> = plans.into_iter().collect();
+    Some(Parts {
+        agents: agents?,
+        groups: groups?,
+        topics: topics?,
+        talks: talks?,
+        plans: plans?,
+        judge: judge?,
+        scene: scene?,
+    })
 }
 
 fn talk(c: &mut Compiler<'_>, t: &soifra_graph::Conversation) -> Compiled<TalkChannelCode> {

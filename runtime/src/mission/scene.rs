@@ -32,6 +32,7 @@ pub(super) fn compile(c: &mut Compiler<'_>, graph: &Graph) -> Compiled<SceneCode
         world: components(c, &graph.world)?,
         platforms: graph.platforms.iter().map(|p| components(c, &p.components)).collect::<Compiled<_>>()?,
         robots: graph.robots.iter().map(|r| robot(c, r)).collect::<Compiled<_>>()?,
+        faults: components(c, &graph.faults)?,
     })
 }
 
@@ -101,7 +102,13 @@ pub(super) fn set(mission: &Mission, settings: &Settings) -> Result<Scene, Diagn
             robots.push(RobotScene { host: r.host, ..robot });
         }
     }
-    Ok(Scene { seed: settings.seed, step, world, platforms, robots })
+    let mut faults = Vec::new();
+    for (number, (x, code)) in graph.faults.iter().zip(&code.faults).enumerate() {
+        // They have no names: their place among them tells their random numbers apart.
+        let part = part(&mut start, x, code, number.to_string(), "", 0)?;
+        faults.push(Part { name: String::new(), ..part });
+    }
+    Ok(Scene { seed: settings.seed, step, world, platforms, robots, faults })
 }
 
 fn part(

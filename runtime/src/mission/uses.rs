@@ -79,7 +79,7 @@ impl Uses {
                 }
                 StmtKind::Tell { content, .. } => self.expr(content),
                 StmtKind::Note(_, e) => self.exprs(e),
-                StmtKind::Raise(_) => {}
+                StmtKind::Raise(_) | StmtKind::Govern(_) => {}
                 StmtKind::If(c, a, b) => {
                     self.expr(c);
                     self.stmts(a);

@@ -184,6 +184,8 @@ pub enum Event {
         #[serde(with = "exact::registers")]
         registers: Vec<f64>,
     },
+    /// A declared fault strikes a sensor, `robot.sensor`.
+    Trouble { target: String, text: String },
     /// A remark.
     Note { robot: u32, agent: String, text: String },
     /// World truth of a robot, for pictures, reports and replays; `path_m` is the length of its path so far.
@@ -214,6 +216,8 @@ pub enum Event {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         robot: Option<u32>,
         status: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        reason: Option<String>,
     },
     /// An expectation was decided: held or violated, with its margin.
     Expectation {

@@ -177,3 +177,19 @@ fn executions_can_be_asked_for() {
     );
     assert!(ran.report.expectations.iter().all(|e| e.held == Some(true)), "{:#?}", ran.report.expectations);
 }
+
+/// What has not even begun at its deadline gives its first answer as soon as it can.
+#[test]
+fn an_anytime_service_that_begins_too_late_makes_no_rounds() {
+    let ran = host(
+        "  service urgent every 100 ms worst 60 ms deadline 90 ms priority 2 core 0 { set x = 1 }
+  service better every 100 ms worst 5 ms budget 30 ms deadline 50 ms soft priority 1 core 0 {
+    refine n = 0 by n + 1 cost 5 ms
+    note \"rounds\", n
+  }",
+        "within 100 ms",
+    );
+    assert_eq!(completions(&ran), ["60 urgent", "65 better 0"]);
+    let misses = ran.all(|r| matches!(r.event, Event::Miss { .. }).then_some(r.t.0 / 1_000_000));
+    assert_eq!(misses, [50]);
+}

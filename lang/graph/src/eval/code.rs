@@ -5,7 +5,7 @@
 
 use super::FaultKind;
 use crate::Execution;
-use crate::{Function, Name, Own, Run, Span, Truth, Type};
+use crate::{Function, Govern, Name, Own, Run, Span, Truth, Type};
 
 /// Where registers lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -256,6 +256,7 @@ pub(super) enum EffectCode {
         value: Option<(Type, u32)>,
     },
     Raise(u32),
+    Govern(Govern),
     SetParam {
         param: u32,
         n: u32,

@@ -1,7 +1,7 @@
 //! What a run may ask of its surroundings, and what it does to them.
 
 use super::FaultKind;
-use crate::{Distribution, Execution, Name, Own, Run, Span, Truth, Type};
+use crate::{Distribution, Execution, Govern, Name, Own, Run, Span, Truth, Type};
 
 /// The surroundings of a run. Every method has a default that says "not available here", so that an
 /// implementation answers only what may be asked in its place.
@@ -151,6 +151,8 @@ pub enum Effect<'a> {
     },
     /// An event of the agent is raised.
     Raise(u32),
+    /// Something about units, sub-goals or goals.
+    Govern(&'a Govern),
     /// A mission parameter is set. This run goes on seeing the former value in its memory.
     SetParam {
         /// Parameter.

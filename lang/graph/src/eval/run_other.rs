@@ -334,6 +334,7 @@ impl Program {
                 Effect::Note { text, value: Some((ty, value(*n)?)) }
             }
             EffectCode::Raise(event) => Effect::Raise(*event),
+            EffectCode::Govern(what) => Effect::Govern(what),
             EffectCode::SetParam { param, n } => Effect::SetParam { param: *param, registers: value(*n)? },
             EffectCode::Rule { rule, at } => Effect::RuleFired { rule: *rule, at: *at },
         };

@@ -146,6 +146,7 @@ pub(super) struct AgentView<'g> {
     pub sensors: &'g [Port],
     pub actuators: &'g [Port],
     pub events: usize,
+    pub units: usize,
     pub devices: u32,
 }
 
@@ -226,6 +227,7 @@ impl<'g> Compiler<'g> {
                 sensors: &agent.sensors,
                 actuators: &agent.actuators,
                 events: agent.events.len(),
+                units: agent.units.len(),
                 devices: agent.devices.len() as u32,
             });
         }

@@ -5,7 +5,7 @@ use super::emit::error;
 use super::expr::gives;
 use super::{Compiled, Compiler, MAX_DEPTH};
 use crate::eval::code::{EffectCode, Instr, Recipients};
-use crate::{Conjunct, Expr, Open, Reply, Rule, Span, Stmt, StmtKind, Type};
+use crate::{Conjunct, Expr, Govern, Open, Reply, Rule, Span, Stmt, StmtKind, Type};
 
 /// Every expression of some statements.
 pub(super) fn walk<'s>(stmts: &'s [Stmt], visit: &mut dyn FnMut(&'s Expr)) {
@@ -32,7 +32,7 @@ pub(super) fn walk<'s>(stmts: &'s [Stmt], visit: &mut dyn FnMut(&'s Expr)) {
                 r.step.walk(visit);
                 r.until.iter().for_each(|e| e.walk(visit));
             }
-            StmtKind::Note(_, None) | StmtKind::Raise(_) => {}
+            StmtKind::Note(_, None) | StmtKind::Raise(_) | StmtKind::Govern(_) => {}
             StmtKind::If(e, then, otherwise) | StmtKind::IfSome { value: e, then, otherwise, .. } => {
                 e.walk(visit);
                 walk(then, visit);
@@ -102,6 +102,7 @@ impl Compiler<'_> {
             | StmtKind::Tell { .. }
             | StmtKind::Note(..)
             | StmtKind::Raise(_)
+            | StmtKind::Govern(_)
             | StmtKind::SetParam(..) => self.gen_effect(s)?,
         }
         Ok(())
@@ -362,6 +363,14 @@ impl Compiler<'_> {
             }
             StmtKind::Raise(i) if (*i as usize) < agent.events => (EffectCode::Raise(*i), 0),
             StmtKind::Raise(i) => return error(s.at, format!("the agent has no event {i}")),
+            StmtKind::Govern(what) => {
+                if let Govern::Start(u) | Govern::Stop(u) = what
+                    && *u as usize >= agent.units
+                {
+                    return error(s.at, format!("the agent has no unit {u}"));
+                }
+                (EffectCode::Govern(what.clone()), 0)
+            }
             StmtKind::SetParam(i, e) => {
                 let Some(t) = self.params.ty(*i as usize).cloned() else {
                     return error(s.at, format!("there is no parameter {i}"));

@@ -1,0 +1,349 @@
+//! What planner, directory and agents do when a message arrives.
+
+use super::{AGAIN, DIRECTORY, Engine, PLANNER};
+use crate::engine::{
+    minds::{ACHIEVED, FAILED},
+    queue::Scheduled,
+};
+use serde::{Deserialize, Serialize};
+use soifra_graph::{
+    Govern, Name,
+    eval::{Memory, NoEnv},
+    planning::Wanted,
+};
+
+/// A message between planner, directory and agents.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(in crate::engine) enum Notice {
+    /// To the directory: an agent offers these from now on.
+    Register { instance: u32, offers: Vec<u32>, record: Option<u64> },
+    /// To the directory: an agent offers nothing any more.
+    Deregister { instance: u32, record: Option<u64> },
+    /// To the directory: who offers this?
+    Query { service: Name, record: Option<u64> },
+    /// To the planner: those who offer it.
+    Found { record: Option<u64> },
+    /// To the planner: an agent offers something new.
+    Appeared { instance: u32, record: Option<u64> },
+    /// To the planner: an agent is gone.
+    Gone { instance: u32, record: Option<u64> },
+    /// To an agent: serve this task with these offers.
+    Request { instance: u32, task: u32, offers: Vec<u32>, ticket: u64, record: Option<u64> },
+    /// To an agent: these offers are not wanted for the task any more.
+    Cancel { instance: u32, task: u32, offers: Vec<u32>, record: Option<u64> },
+    /// To the planner: an agent agrees, or refuses.
+    Answer { instance: u32, task: u32, ticket: u64, agreed: bool, record: Option<u64> },
+    /// To the planner: an agent has achieved a task, or cannot, and why.
+    Done { instance: u32, task: u32, achieved: bool, record: Option<u64> },
+    /// To the planner: a goal is wanted, by number when it is one.
+    Post { goal: Option<u32>, name: String, from: Option<u32>, record: Option<u64> },
+    /// To the planner itself: those who refused may be asked again.
+    Again { wanted: Wanted },
+}
+
+impl Notice {
+    /// Whether it can be one in a run with so many agents.
+    pub fn fits(&self, instances: usize) -> bool {
+        match self {
+            Notice::Register { instance, .. }
+            | Notice::Deregister { instance, .. }
+            | Notice::Appeared { instance, .. }
+            | Notice::Gone { instance, .. }
+            | Notice::Request { instance, .. }
+            | Notice::Cancel { instance, .. }
+            | Notice::Answer { instance, .. }
+            | Notice::Done { instance, .. } => (*instance as usize) < instances,
+            Notice::Post { from, .. } => from.is_none_or(|i| (i as usize) < instances),
+            Notice::Query { .. } | Notice::Found { .. } | Notice::Again { .. } => true,
+        }
+    }
+}
+
+impl Engine<'_> {
+    /// A message arrives.
+    pub(in crate::engine) fn notice(&mut self, notice: Notice) {
+        match notice {
+            Notice::Register { instance, offers, record } => self.register(instance, &offers, record),
+            Notice::Deregister { instance, record } => {
+                self.directory.deregister(instance);
+                let content = self.agent_name(instance);
+                let record =
+                    self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &content, Some("gone".into()), "subscribe", record);
+                self.notify(Notice::Gone { instance, record });
+            }
+            Notice::Query { service, record } => {
+                let found: Vec<String> =
+                    self.directory.search(&service).map(|i| self.agent_name(i)).collect();
+                let who = if found.is_empty() { "nobody".into() } else { found.join(", ") };
+                let record = self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &service, Some(who), "query", record);
+                self.notify(Notice::Found { record });
+            }
+            Notice::Found { record } => {
+                self.planner.unanswered = self.planner.unanswered.saturating_sub(1);
+                if self.planner.unanswered == 0 && self.planner.matcher.is_none() {
+                    self.allocate(record);
+                }
+            }
+            Notice::Appeared { instance, record } => {
+                let changes = self.planner.matcher.as_mut().map(|m| m.agent_returned(instance));
+                self.carry_out(changes, record);
+            }
+            Notice::Gone { instance, record } => {
+                for t in &mut self.planner.tasks {
+                    t.engaged.retain(|(a, _)| *a != instance);
+                    t.awaiting.remove(&instance);
+                }
+                let changes = self.planner.matcher.as_mut().map(|m| m.agent_lost(instance));
+                self.carry_out(changes, record);
+            }
+            Notice::Request { instance, task, offers, ticket, record } => {
+                self.asked(instance, task, &offers, ticket, record);
+            }
+            Notice::Cancel { instance, task, offers, record } => {
+                self.dismissed(instance, task, &offers, record);
+            }
+            Notice::Answer { instance, task, ticket, agreed, record } => {
+                self.answered(instance, task, ticket, agreed, record);
+            }
+            Notice::Done { instance, task, achieved, record } => {
+                let known = self.planner.tasks.get(task as usize);
+                // What was given to somebody else in the meantime is not this agent's any more.
+                if !known.is_some_and(|t| t.current && t.engaged.iter().any(|(a, _)| *a == instance)) {
+                    return;
+                }
+                if achieved {
+                    self.set_status(task, ACHIEVED, None, record);
+                    self.release_task(task, record);
+                } else {
+                    self.refuse(task, instance, record);
+                }
+                self.count_goals();
+            }
+            Notice::Post { goal, name, from, record } => self.posted(goal, &name, from, record),
+            Notice::Again { wanted } => {
+                self.planner.refused.retain(|(w, _)| *w != wanted);
+                let open = self.current().find(|(_, t)| t.wanted == wanted && t.status == FAILED);
+                if let Some(number) = open.map(|(n, _)| n) {
+                    self.replan(number, None);
+                    self.count_goals();
+                }
+            }
+        }
+    }
+
+    /// An agent's platform registers what the agent offers to the planner.
+    pub(in crate::engine) fn ask_to_register(&mut self, instance: u32, cause: Option<u64>) {
+        let agent = self.cast.instances[instance as usize].agent;
+        let all = (0..).zip(&self.mission.graph.agents[agent as usize].offers);
+        let (offers, names): (Vec<u32>, Vec<&str>) =
+            all.filter(|(_, o)| o.unit.is_some()).map(|(i, o)| (i, &*o.name)).unzip();
+        if offers.is_empty() || !self.plans() {
+            return;
+        }
+        let content = format!("register {}", names.join(", "));
+        let record = self.trace_planner(instance, "request", DIRECTORY, &content, None, "request", cause);
+        self.notify(Notice::Register { instance, offers, record });
+    }
+
+    fn register(&mut self, instance: u32, offers: &[u32], record: Option<u64>) {
+        let agent = self.cast.instances[instance as usize].agent;
+        let mission = self.mission;
+        let declared = &mission.graph.agents[agent as usize].offers;
+        let mut names = Vec::new();
+        for o in offers.iter().filter_map(|o| declared.get(*o as usize)) {
+            self.directory.register(&o.name, instance);
+            names.push(&*o.name);
+        }
+        let content = format!("registered {}", names.join(", "));
+        let record = self.trace_planner(DIRECTORY, "inform", instance, &content, None, "request", record);
+        // The planner wants to know of those who come later.
+        if self.planner.matcher.is_some() {
+            let content = self.agent_name(instance);
+            let record = self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &content, Some(names.join(", ")), "subscribe", record);
+            self.notify(Notice::Appeared { instance, record });
+        }
+    }
+
+    /// An agent is requested: it agrees or refuses by its conditions.
+    fn asked(&mut self, instance: u32, task: u32, offers: &[u32], ticket: u64, record: Option<u64>) {
+        let Some(known) = self.planner.tasks.get(task as usize) else { return };
+        let subgoal = self.subgoal_name(known.wanted);
+        let refusal = match self.lives.is_dead(instance) {
+            true => Some("it is dead".to_string()),
+            false => self.refusal(instance, offers),
+        };
+        let agreed = refusal.is_none();
+        let performative = if agreed { "agree" } else { "refuse" };
+        let record = self.trace_planner(instance, performative, PLANNER, &subgoal, refusal, "request", record);
+        self.notify(Notice::Answer { instance, task, ticket, agreed, record });
+        if agreed {
+            for offer in offers {
+                let first = self.planner.serves(instance, *offer).next().is_none();
+                self.planner.serving.insert((instance, *offer, task));
+                if first {
+                    self.switch_offer(instance, *offer, true, Some(&subgoal), record);
+                }
+            }
+        }
+    }
+
+    /// Why an agent will not serve: the condition of an offer that does not hold.
+    fn refusal(&mut self, instance: u32, offers: &[u32]) -> Option<String> {
+        let mission = self.mission;
+        let who = self.cast.instances[instance as usize];
+        let code = &mission.agents[who.agent as usize];
+        for offer in offers {
+            let Some(block) = code.offers.get(*offer as usize).and_then(|o| o.when.as_ref()) else { continue };
+            let mut frame = std::mem::take(&mut self.desk.frame);
+            frame.resize(frame.len().max(block.frame as usize), 0.0);
+            let (from, to) = (who.states, who.states + code.states.len());
+            let mut states = self.minds.states.get(from..to).unwrap_or_default().to_vec();
+            let mut memory = Memory {
+                states: &mut states,
+                arguments: self.cast.arguments_of(instance as usize),
+                params: &self.params,
+            };
+            let run = mission.program.run(block, &mut frame, &mut memory, &mut NoEnv);
+            let holds = frame.get(block.result as usize).is_some_and(|x| *x != 0.0);
+            self.desk.frame = frame;
+            let declared = &mission.graph.agents[who.agent as usize].offers[*offer as usize];
+            match run {
+                Ok(()) if holds => {}
+                Ok(()) => {
+                    let written = declared.when.as_ref().map_or("", |e| mission.written(e.span));
+                    return Some(format!("not {}", written.split_whitespace().collect::<Vec<_>>().join(" ")));
+                }
+                Err(fault) => return Some(fault.to_string()),
+            }
+        }
+        None
+    }
+
+    fn dismissed(&mut self, instance: u32, task: u32, offers: &[u32], record: Option<u64>) {
+        let subgoal = self.planner.tasks.get(task as usize).map(|t| self.subgoal_name(t.wanted));
+        for offer in offers {
+            let removed = self.planner.serving.remove(&(instance, *offer, task));
+            if removed && self.planner.serves(instance, *offer).next().is_none() {
+                self.switch_offer(instance, *offer, false, subgoal.as_deref(), record);
+            }
+        }
+    }
+
+    /// The unit of an offer runs from now on, or no more.
+    fn switch_offer(&mut self, instance: u32, offer: u32, on: bool, subgoal: Option<&str>, cause: Option<u64>) {
+        let who = self.cast.instances[instance as usize];
+        let offer = self.mission.graph.agents[who.agent as usize].offers.get(offer as usize);
+        if let Some(unit) = offer.and_then(|o| o.unit) {
+            self.switch_unit(who.units + unit, on, subgoal, cause);
+        }
+    }
+
+    fn answered(&mut self, instance: u32, task: u32, ticket: u64, agreed: bool, record: Option<u64>) {
+        let Some(t) = self.planner.tasks.get_mut(task as usize) else { return };
+        if t.awaiting.get(&instance) != Some(&ticket) {
+            return;
+        }
+        t.awaiting.remove(&instance);
+        if agreed {
+            let complete = t.awaiting.is_empty();
+            if complete {
+                self.allocated(task, record);
+            }
+        } else {
+            self.refuse(task, instance, record);
+        }
+        self.count_goals();
+    }
+
+    /// An agent will not serve a task: it is not asked for it any more, for a while.
+    fn refuse(&mut self, task: u32, instance: u32, record: Option<u64>) {
+        let Some(wanted) = self.planner.tasks.get(task as usize).map(|t| t.wanted) else { return };
+        self.planner.refused.insert((wanted, instance));
+        self.queue.put(self.now + AGAIN, Scheduled::Notice(Box::new(Notice::Again { wanted })));
+        self.replan(task, record);
+    }
+
+    /// A unit says that what it is engaged for is achieved, or that it cannot be.
+    pub(in crate::engine) fn govern(&mut self, unit: u32, what: &Govern, cause: Option<u64>) {
+        let info = self.cast.units[unit as usize];
+        let who = self.cast.instances[info.instance as usize];
+        match what {
+            Govern::Start(u) => self.switch_unit(who.units + u, true, None, cause),
+            Govern::Stop(u) => self.switch_unit(who.units + u, false, None, cause),
+            Govern::Achieve | Govern::Fail(_) => {
+                let offers = &self.mission.graph.agents[who.agent as usize].offers;
+                let own = offers.iter().position(|o| o.unit == Some(info.unit)).map(|o| o as u32);
+                let mut tasks: Vec<u32> = self
+                    .planner
+                    .serving
+                    .range((info.instance, 0, 0)..=(info.instance, u32::MAX, u32::MAX))
+                    .filter(|(_, offer, _)| own.is_none_or(|o| o == *offer))
+                    .map(|(_, _, task)| *task)
+                    .collect();
+                tasks.sort_unstable();
+                tasks.dedup();
+                for task in tasks {
+                    let Some(wanted) = self.planner.tasks.get(task as usize).map(|t| t.wanted) else { continue };
+                    let subgoal = self.subgoal_name(wanted);
+                    let (achieved, performative, reason) = match what {
+                        Govern::Fail(why) => (false, "failure", Some(why.clone())),
+                        _ => (true, "inform", Some("achieved".to_string())),
+                    };
+                    let record =
+                        self.trace_planner(info.instance, performative, PLANNER, &subgoal, reason, "request", cause);
+                    self.notify(Notice::Done { instance: info.instance, task, achieved, record });
+                }
+            }
+            Govern::Pursue(goal) => {
+                let name = self.mission.graph.goals[*goal as usize].name.to_string();
+                let content = format!("achieve {name}");
+                let record = self.trace_planner(info.instance, "request", PLANNER, &content, None, "request", cause);
+                self.notify(Notice::Post { goal: Some(*goal), name, from: Some(info.instance), record });
+            }
+        }
+    }
+
+    /// Somebody outside the mission asks for a goal.
+    pub(in crate::engine) fn post_goal(&mut self, name: &str) {
+        let goal = self.mission.graph.goals.iter().position(|g| *g.name == *name).map(|g| g as u32);
+        let content = format!("achieve {name}");
+        let record = self.trace_planner("operator", "request", PLANNER, &content, None, "request", None);
+        self.notify(Notice::Post { goal, name: name.into(), from: None, record });
+    }
+
+    fn posted(&mut self, goal: Option<u32>, name: &str, from: Option<u32>, record: Option<u64>) {
+        let mut refusal = None;
+        let pursued = goal.is_some_and(|g| self.planner.pursued[g as usize]);
+        match goal {
+            None => refusal = Some(format!("no plan: there is no goal {name}")),
+            Some(_) if pursued => refusal = Some("it is pursued".to_string()),
+            Some(goal) => {
+                self.planner.pursued[goal as usize] = true;
+                let old: Vec<u32> = self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(n, _)| n).collect();
+                old.into_iter().for_each(|n| self.give_up(n, record));
+                let wanted: Vec<Wanted> = self.all_wanted().into_iter().filter(|w| w.goal == goal).collect();
+                if wanted.is_empty() {
+                    refusal = Some(format!("no plan for {name} holds"));
+                }
+                for w in wanted {
+                    let number = self.want(w, record);
+                    refusal = refusal.or_else(|| self.why_refused(number));
+                }
+                if refusal.is_some() {
+                    // What cannot be served as a whole is not begun.
+                    self.planner.pursued[goal as usize] = false;
+                    let begun: Vec<u32> =
+                        self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(n, _)| n).collect();
+                    begun.into_iter().for_each(|n| self.give_up(n, record));
+                }
+                self.count_goals();
+            }
+        }
+        let performative = if refusal.is_some() { "refuse" } else { "agree" };
+        let content = format!("achieve {name}");
+        match from {
+            Some(agent) => self.trace_planner(PLANNER, performative, agent, &content, refusal, "request", record),
+            None => self.trace_planner(PLANNER, performative, "operator", &content, refusal, "request", record),
+        };
+    }
+}
