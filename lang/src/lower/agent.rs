@@ -39,7 +39,9 @@ impl<'a> Checker<'a> {
         self.states(a, &mut out);
         for m in &a.members {
             match m {
-                AgentMember::Offers(n, _) => self.agent.offered.push(n.name.clone()),
+                AgentMember::Offers(n, _) if self.conversations.position(&n.name).is_none() => {
+                    self.agent.offered.push(n.name.clone());
+                }
                 AgentMember::Unit(u) => self.agent.units.push(u.name.name.clone()),
                 AgentMember::Constant(c) => drop(self.agent.lets.insert(c.name.name.clone(), c)),
                 AgentMember::Action(x) => drop(self.agent.actions.insert(x.name.name.clone(), x)),
@@ -75,8 +77,10 @@ impl<'a> Checker<'a> {
     fn offers(&mut self, a: &'a Agent, out: &mut GAgent) {
         for m in &a.members {
             let AgentMember::Offers(n, when) = m else { continue };
-            let unit = self.agent.units.iter().position(|u| *u == n.name).map(|u| u as u32);
-            if unit.is_none() && self.conversations.position(&n.name).is_none() {
+            // A conversation may have a service of its own name.
+            let spoken = self.conversations.position(&n.name).is_some();
+            let unit = self.agent.units.iter().position(|u| *u == n.name && !spoken).map(|u| u as u32);
+            if unit.is_none() && !spoken {
                 let units = self.agent.units.iter().cloned();
                 let known: Vec<Name> = units.chain(self.conversations.iter().map(|c| c.name.clone())).collect();
                 let what = "service, machine, plan or conversation";

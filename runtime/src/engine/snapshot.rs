@@ -43,6 +43,7 @@ pub struct Snapshot {
     talks: Talks,
     directory: Directory,
     lives: Lives,
+    faults: Vec<String>,
     planner: Planner,
     agenda: Agenda,
     actuators: Actuators,
@@ -92,6 +93,7 @@ impl Engine<'_> {
                 talks: self.talks.clone(),
                 directory: self.directory.clone(),
                 lives: self.lives.clone(),
+                faults: self.faults.clone(),
                 planner: self.planner.clone(),
                 agenda: self.queue.agenda(),
                 actuators: self.actuators.clone(),
@@ -144,7 +146,7 @@ impl Engine<'_> {
         (self.tallies, self.cores) = (s.tallies, s.cores);
         self.devices = s.devices;
         (self.talks, self.directory) = (s.talks, s.directory);
-        (self.lives, self.planner) = (s.lives, s.planner);
+        (self.lives, self.planner, self.faults) = (s.lives, s.planner, s.faults);
         (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);
         (self.poses, self.movers) = (s.poses, s.movers.into_iter().collect());

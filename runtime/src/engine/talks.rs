@@ -354,10 +354,13 @@ impl Engine<'_> {
         }
         let c = &self.mission.graph.conversations[conversation as usize];
         let state = &c.states[b.states[side.index()] as usize];
-        let Some(m) = state.move_of(u.by, &u.performative).filter(|_| !u.unreadable) else {
+        if u.unreadable {
+            self.not_understood(&u, side, me);
+            return;
+        }
+        let Some(m) = state.move_of(u.by, &u.performative) else {
             let why = match state.is_final() {
                 true => "the conversation is over".to_string(),
-                false if u.unreadable => "unreadable".to_string(),
                 false => format!("unexpected in state {}", state.name),
             };
             let over = state.is_final();
@@ -385,6 +388,22 @@ impl Engine<'_> {
         let letter = (u.performative.clone(), u.registers, u.record);
         let envelope = [f64::from(peers[u.by.index()]), u.branch as f64];
         self.deliver_talk(me, conversation, envelope, &what, letter, record);
+    }
+
+    /// A message that nobody can read, by a fault: the receiver says so where its protocol lets it.
+    fn not_understood(&mut self, u: &Utterance, side: Role, me: u32) {
+        let record = self.trace_utterance(u, me, Some("unreadable by a fault"));
+        let Some(b) = self.talks.branches.get(&u.branch) else { return };
+        let c = &self.mission.graph.conversations[b.conversation as usize];
+        let state = &c.states[b.states[side.index()] as usize];
+        let Some(heard) = state.move_of(u.by, &u.performative).map(|m| m.target) else { return };
+        let answer = c.states[heard as usize].move_of(side, "not_understood").map(|m| m.target);
+        let Some(target) = answer else { return };
+        self.enter(u.branch, side, heard, None, record);
+        let reason = Some("unreadable");
+        let speech =
+            Speech { performative: "not_understood", registers: &[], reason, limit: None, cause: record };
+        self.utter(u.branch, side, target, &speech);
     }
 
     /// An agent that has died says nothing any more; whom it was talking with learns that from its platform.

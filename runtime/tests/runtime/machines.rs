@@ -87,7 +87,7 @@ fn a_plan_achieves_its_sub_goal_and_ends() {
     let ran = run(PLAN);
     assert_eq!(ran.report.outcome, Outcome::Timeout, "tries == 1 fails for ever: {:?}", ran.report);
     let goals = ran.all(|r| match &r.event {
-        Event::Goal { goal, robot, status } => Some(format!("{goal} {robot:?} {status}")),
+        Event::Goal { goal, robot, status, .. } => Some(format!("{goal} {robot:?} {status}")),
         _ => None,
     });
     assert_eq!(goals[..2], ["get_there Some(0) failed", "g None failed"]);

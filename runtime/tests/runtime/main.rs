@@ -1,5 +1,6 @@
 //! The runtime from the outside: missions written in the language, on a scripted platform.
 
+mod allocation;
 mod arbitration;
 mod conversations;
 mod cores;
@@ -12,3 +13,4 @@ mod replay;
 mod scheduling;
 mod support;
 mod topics;
+mod troubles;
