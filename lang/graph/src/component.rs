@@ -19,11 +19,12 @@ pub struct Model {
 
 /// Roles whose entries have a name (`sensor ir = …`); all others stand alone (`body = …`).
 pub const NAMED_ROLES: &[&str] =
-    &["sensor", "actuator", "wall", "obstacle", "region", "mover", "material", "topic"];
+    &["sensor", "actuator", "wall", "obstacle", "region", "mover", "parcel", "material", "topic"];
 /// Roles a platform profile has.
-pub const PLATFORM_ROLES: &[&str] = &["body", "drive", "sensor", "actuator", "safe", "prepare", "finish"];
+pub const PLATFORM_ROLES: &[&str] =
+    &["body", "drive", "power", "sensor", "actuator", "safe", "prepare", "finish"];
 /// Roles a world has.
-pub const WORLD_ROLES: &[&str] = &["bounds", "wall", "obstacle", "region", "mover", "material"];
+pub const WORLD_ROLES: &[&str] = &["bounds", "wall", "obstacle", "region", "mover", "parcel", "material"];
 /// Roles a mission or test has besides those of its world.
 pub const FAULT_ROLES: &[&str] = &["fault"];
 
@@ -88,6 +89,26 @@ const TABLE: &[(&str, &str, &str)] = &[
         "strides(duration: Duration) -> Stride",
         "A straight stride of a given heading and length, walked at constant speed within the duration",
     ),
+    (
+        "actuator",
+        "gripper(reach: Length = 5 cm, lifetime: Duration? = none) -> Grip",
+        "Closes around the nearest free parcel within reach of the rim of the body, and holds it until it is opened; what it held then lies in front of the robot",
+    ),
+    (
+        "sensor",
+        "holding(period: Duration, latency: Duration = 0 s) -> Grasp",
+        "The number of the parcel that the gripper holds",
+    ),
+    (
+        "sensor",
+        "charge(period: Duration, latency: Duration = 0 s) -> Battery",
+        "How full the battery of the platform is",
+    ),
+    (
+        "power",
+        "battery(energy: Energy, drive: Force, standby: Power = 0 W)",
+        "What a full battery holds, what a metre of way takes and what a second takes; an empty one moves no robot. Without `power` a robot never tires",
+    ),
     ("safe", "stop()", "Stand still; always possible"),
     ("prepare", "stand()", "Nothing to prepare"),
     ("finish", "stop()", "Stand still"),
@@ -118,6 +139,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "mover",
         "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, keep_out: Length? = none, material: Text = \"plaster\")",
         "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds; given `keep_out`, its rim begins and stays that far from every robot's start and target",
+    ),
+    (
+        "parcel",
+        "crate(at: Point<map>, radius: Length = 10 cm)",
+        "A thing to be carried: it lies on the ground, in nobody's way, until a gripper closes around it. Parcels are numbered in order, from 0",
     ),
     (
         "material",

@@ -6,21 +6,25 @@
 
 mod args;
 mod body;
+mod cargo;
 mod collision;
 mod geometry;
 mod index;
 mod motion;
 mod movers;
 mod noise;
+mod power;
 mod scene;
 mod schedule;
 mod sensors;
 mod truth;
 
 use body::Body;
+use cargo::Cargo;
 use collision::Collisions;
 use motion::{Drive, Stride};
 use movers::Mover;
+use power::Battery;
 use scene::Things;
 use schedule::Schedule;
 use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
@@ -50,12 +54,15 @@ pub struct Simulator {
     continuous: Vec<u32>,
     movers: Vec<Mover>,
     things: Things,
+    cargo: Cargo,
     collisions: Collisions,
     schedule: Schedule,
     /// By platform.
     actuators: Vec<Vec<Actuator>>,
     /// Platform of each robot.
     platforms: Vec<u32>,
+    /// By platform.
+    batteries: Vec<Option<Battery>>,
 }
 
 /// What an actuator does with a command.
@@ -68,6 +75,11 @@ enum Actuator {
         /// How long a stride takes (ns).
         duration: i64,
     },
+    /// Register: whether it is closed.
+    Gripper {
+        /// How far it reaches from the rim of the robot.
+        reach: f64,
+    },
 }
 
 impl Simulator {
@@ -78,6 +90,7 @@ impl Simulator {
         let chassis = bodied.map(scene::chassis).collect::<Result<Vec<_>, _>>()?;
         let actuators = scene::actuators(scene, &chassis)?;
         let things = scene::things(scene)?;
+        let batteries = chassis.iter().map(|c| c.battery).collect();
         let population = scene::population(scene, &chassis)?;
         let platforms: Vec<u32> = scene.bodies().iter().map(|r| r.platform).collect();
         let twists = |i: &u32| actuators[platforms[*i as usize] as usize].contains(&Actuator::Twist);
@@ -92,6 +105,8 @@ impl Simulator {
             drives: population.drives,
             movers: population.movers,
             things,
+            cargo: Cargo::new(scene)?,
+            batteries,
             actuators,
             platforms,
         })
@@ -140,7 +155,7 @@ impl Simulator {
             }
             self.extend(t);
             if t == capture {
-                self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things);
+                self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things, &self.cargo);
             }
             if t == look {
                 self.looked = t;
@@ -158,6 +173,14 @@ impl Simulator {
     fn robot(&mut self, robot: u32) -> Option<(&mut dyn Drive, &mut Body)> {
         let drive = self.drives.get_mut(robot as usize)?;
         Some((drive.as_mut(), self.bodies.get_mut(robot as usize)?))
+    }
+
+    /// Whether the battery of a robot is empty.
+    fn is_empty(&self, robot: u32) -> bool {
+        let platform = self.platforms.get(robot as usize);
+        let battery = platform.and_then(|p| self.batteries.get(*p as usize)).copied().flatten();
+        let body = self.bodies.get(robot as usize);
+        battery.zip(body).is_some_and(|(b, body)| b.charge(body, self.now) <= 0.0)
     }
 
     fn stop(&mut self, robot: u32) {
@@ -195,6 +218,18 @@ impl Platform for Simulator {
         let platform = self.platforms.get(robot as usize).and_then(|p| self.actuators.get(*p as usize));
         let actuator = platform.and_then(|a| a.get(actuator as usize)).copied();
         if !command.iter().all(|x| x.is_finite()) || expires.0 <= now {
+            return self.stop(robot);
+        }
+        if let (Some(Actuator::Gripper { reach }), [closed]) = (actuator, command) {
+            if let Some(body) = self.bodies.get(robot as usize) {
+                match *closed != 0.0 {
+                    true => self.cargo.close(robot, body, reach, now),
+                    false => self.cargo.open(robot, body, now),
+                }
+            }
+            return;
+        }
+        if self.is_empty(robot) {
             return self.stop(robot);
         }
         let limited = |x: f64| x.clamp(-LARGEST, LARGEST);

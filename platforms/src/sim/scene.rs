@@ -9,6 +9,7 @@ use super::{
     motion::{self, Drive, DriveModel},
     movers::{Mover, ToAndFro, Wanderer},
     noise::Stream,
+    power::Battery,
 };
 use soifra_runtime::{
     Scene,
@@ -51,6 +52,8 @@ pub struct Chassis {
     pub height: f64,
     /// Its drive.
     pub drive: Box<dyn DriveModel>,
+    /// What moves it; none for one that never tires.
+    pub battery: Option<Battery>,
 }
 
 /// Bodies and what makes them move. Robots come first, then movers.
@@ -133,7 +136,8 @@ pub fn chassis(platform: &PlatformScene) -> Result<Chassis, String> {
         return Err(args.wrong("the simulator has no such body"));
     }
     let drive = motion::build(Args { part: one("drive")?, of: &of })?;
-    Ok(Chassis { radius: args.positive("radius")?, height: args.positive("height")?, drive })
+    let battery = Battery::of(platform)?;
+    Ok(Chassis { radius: args.positive("radius")?, height: args.positive("height")?, drive, battery })
 }
 
 /// The actuators of each platform, and whether it can be made safe.
@@ -149,6 +153,7 @@ pub fn actuators(scene: &Scene, chassis: &[Chassis]) -> Result<Vec<Vec<Actuator>
             let args = Args { part, of: &of };
             match &*part.model {
                 "twist" => Ok(Actuator::Twist),
+                "gripper" => Ok(Actuator::Gripper { reach: args.at_least_zero("reach")? }),
                 "strides" if chassis.drive.strides() => {
                     Ok(Actuator::Strides { duration: args.period("duration")?.0 })
                 }

@@ -3,6 +3,7 @@
 use super::{
     args::Args,
     body::Body,
+    cargo::Cargo,
     motion::Drive,
     scene::{Chassis, Things},
     sensors::{self, Mount, Nearby, Sensor, View},
@@ -92,11 +93,18 @@ impl Schedule {
     }
 
     /// Captures what is to be captured at `t`. All motion up to then must be planned.
-    pub fn capture(&mut self, t: Time, bodies: &[Body], drives: &[Box<dyn Drive>], things: &Things) {
+    pub fn capture(
+        &mut self,
+        t: Time,
+        bodies: &[Body],
+        drives: &[Box<dyn Drive>],
+        things: &Things,
+        cargo: &Cargo,
+    ) {
         self.nearby.reset(self.robots);
         for group in self.groups.iter_mut().filter(|g| g.next == t.0) {
             self.nearby.fill(group.sensor.needs(), bodies, t);
-            let view = View { at: t, bodies, drives, things, nearby: &self.nearby };
+            let view = View { at: t, bodies, drives, things, cargo, nearby: &self.nearby };
             let mut registers = group.spare.pop().unwrap_or_default();
             registers.clear();
             for (seat, robot) in group.robots.iter().enumerate() {

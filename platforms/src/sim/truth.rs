@@ -38,6 +38,7 @@ impl WorldTruth for Simulator {
 
     fn movers(&self) -> Vec<(String, [f64; 7])> {
         let movers = self.bodies.iter().skip(self.drives.len());
-        movers.map(|b| (b.name.clone(), b.pose(Time(self.now)))).collect()
+        let movers = movers.map(|b| (b.name.clone(), b.pose(Time(self.now))));
+        movers.chain(self.cargo.poses(&self.bodies, self.now)).collect()
     }
 }

@@ -479,11 +479,13 @@ impl Engine<'_> {
             self.deliver_talk(me, conversation, envelope, &what, letter, record);
             return;
         }
-        let over = c.states.iter().position(|s| s.is_final()).map(|s| s as u32);
-        match over {
+        // Where the protocol has no word for it, the side goes where waiting in vain leads, else to an end.
+        let end = c.states.iter().position(|s| s.is_final()).map(|s| s as u32);
+        match state.timeout.as_ref().map(|t| t.1).or(end) {
             Some(state) => self.enter(number, side, state, None, record),
             None => b.gone[side.index()] = true,
         }
+        self.release_talk(me, conversation, Some(number), peer, &TalkCode::Timeout, record);
     }
 
     /// A side has waited long enough.

@@ -35,7 +35,10 @@ pub(super) fn corners(shape: &Shape) -> Vec<[f64; 2]> {
 
 /// Radius of a mover in metres.
 pub(super) fn mover_radius(header: &Header, name: &str) -> f64 {
-    let part = header.scene.world.iter().find(|p| &*p.role == "mover" && p.name == name);
+    let part = header.scene.world.iter().find(|p| matches!(&*p.role, "mover" | "parcel") && p.name == name);
+    if let Some(parcel) = part.filter(|p| &*p.role == "parcel") {
+        return parcel.number("radius").clamp(0.0, 1e9);
+    }
     part.and_then(shape::mover_body).map_or(0.0, |b| b.radius).clamp(0.0, 1e9)
 }
 

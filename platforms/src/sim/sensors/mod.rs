@@ -1,7 +1,9 @@
 //! Sensors: what a robot can know of the world. One file for each model.
 
+pub mod charge;
 pub mod discs;
 pub mod encoders;
+pub mod holding;
 pub mod ideal_pose;
 pub mod infrared;
 pub mod laser;
@@ -12,6 +14,7 @@ pub mod ultrasonic;
 use super::{
     args::Args,
     body::Body,
+    cargo::Cargo,
     geometry::{Aabb, Vec2},
     index::Grid,
     motion::Drive,
@@ -33,6 +36,8 @@ pub struct View<'a> {
     pub drives: &'a [Box<dyn Drive>],
     /// Walls and obstacles.
     pub things: &'a Things,
+    /// Parcels.
+    pub cargo: &'a Cargo,
     /// Where robots and movers are; filled as far as [`Sensor::needs`] says.
     pub nearby: &'a Nearby,
 }
@@ -116,6 +121,8 @@ impl Mount<'_> {
 pub fn build(mount: Mount<'_>) -> Result<Box<dyn Sensor>, String> {
     Ok(match &*mount.args.part.model {
         "ideal_pose" => Box::new(ideal_pose::IdealPose),
+        "charge" => Box::new(charge::Charge::new(mount)?),
+        "holding" => Box::new(holding::Holding),
         "discs" => Box::new(discs::Discs::new(mount)?),
         "infrared" => Box::new(infrared::Infrared::new(mount)?),
         "ultrasonic" => Box::new(ultrasonic::Ultrasonic::new(mount)?),
