@@ -154,6 +154,16 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
         "device",
         &[("robot", "index"), ("agent", "text"), ("device", "text"), ("unit", "text?"), ("waiting", "index")],
     ),
+    (
+        "input",
+        &[
+            ("text", "text"),
+            ("operation", "text"),
+            ("agent", "text?"),
+            ("param", "text?"),
+            ("registers", "numbers?"),
+        ],
+    ),
 ];
 
 /// Place of an event's kind in [`KINDS`].
@@ -188,6 +198,7 @@ pub(crate) fn kind(event: &Event) -> usize {
         Event::Service { .. } => 26,
         Event::Life { .. } => 27,
         Event::Device { .. } => 28,
+        Event::Input { .. } => 29,
     }
 }
 

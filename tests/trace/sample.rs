@@ -224,6 +224,13 @@ pub fn every_kind() -> Vec<Event> {
         },
         Event::Life { robot: 0, agent: agent(), status: "dead".into(), reason: text() },
         Event::Device { robot: 0, agent: agent(), device: "camera".into(), unit: None, waiting: 2 },
+        Event::Input {
+            text: text(),
+            operation: "set".into(),
+            agent: None,
+            param: Some("speed".into()),
+            registers: numbers(),
+        },
     ]
 }
 

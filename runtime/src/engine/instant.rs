@@ -27,13 +27,14 @@ pub(super) struct End {
 impl Engine<'_> {
     /// Runs to the end.
     pub fn run(mut self) -> RunReport {
+        self.operator.begin(self.now);
         let end = loop {
             // The instant of a snapshot is over.
             if !std::mem::take(&mut self.resumed) {
                 if let Some(end) = self.instant() {
                     break end;
                 }
-                if self.stop.load(Ordering::Relaxed) {
+                if self.stop.load(Ordering::Relaxed) || self.operator.stopped() {
                     break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
                 }
             }
@@ -42,9 +43,9 @@ impl Engine<'_> {
             };
             if next > self.now {
                 self.snapshot();
-                if !self.idle(next) {
+                let Some(next) = self.pace(next).filter(|t| self.idle(*t)) else {
                     break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
-                }
+                };
                 self.events = 0;
                 self.now = next;
             }
@@ -81,6 +82,7 @@ impl Engine<'_> {
             self.fail(None, "platform", text, None);
         }
         self.poll();
+        self.operate_all();
         self.arrive();
         self.activate_all();
         self.forget_talks();
@@ -236,6 +238,10 @@ impl Engine<'_> {
 
     /// Puts a letter into a mailbox, whose oldest is lost when it is full.
     pub(super) fn put_letter(&mut self, unit: u32, letter: Arc<Letter>, record: Option<u64>) {
+        if self.is_dead(unit) {
+            self.trace_delivery(unit, &letter, Some("the agent is dead"));
+            return;
+        }
         if let Some(oldest) = self.mail.put(unit, Delivered { letter, record }) {
             self.trace_delivery(unit, &oldest.letter, Some("the mailbox is full"));
         }
@@ -345,6 +351,9 @@ impl Engine<'_> {
         cause: Option<u64>,
         letter: Option<std::sync::Arc<super::post::Letter>>,
     ) {
+        if self.is_dead(unit) {
+            return;
+        }
         self.clocks[unit as usize].last = Some(self.now);
         let release = Release { unit, release, start: self.now, cause, letter, finish: None };
         match self.core_of(unit) {

@@ -1,7 +1,7 @@
 //! The engine: runs a mission on a platform, in virtual time.
 //!
-//! At an instant, in this order: the platform hands over readings and reports; outputs that were put off
-//! and letters arrive; units are released and evaluated, higher priority first, then in order of robot,
+//! At an instant, in this order: the platform hands over readings and reports; an operator's inputs take
+//! effect; outputs that were put off and letters arrive; units are released and evaluated, higher priority first, then in order of robot,
 //! agent and unit; arbiters decide and commands are sent; goals, expectations and the done condition are
 //! judged. Activations of one instant see other agents as they were before it: what they publish arrives
 //! at least a microsecond later, and a parameter they set holds from the next activations on. Events are
@@ -23,8 +23,10 @@ mod goals;
 mod grid;
 mod instant;
 mod judge;
+mod lives;
 mod log;
 mod minds;
+mod operator;
 mod post;
 mod queue;
 mod recorder;
@@ -50,7 +52,9 @@ use devices::DeviceState;
 use directory::Directory;
 use goals::Goals;
 use judge::Judge;
+use lives::Lives;
 use minds::Minds;
+use operator::Operator;
 use post::Mail;
 use queue::Queue;
 use recorder::Recorder;
@@ -70,6 +74,7 @@ pub struct Engine<'m> {
     platform: &'m mut dyn Platform,
     recorder: Recorder<'m>,
     stop: &'m AtomicBool,
+    operator: Operator<'m>,
     seed: u64,
     texts: Texts,
     cast: Cast,
@@ -91,6 +96,7 @@ pub struct Engine<'m> {
     minds: Minds,
     /// Status of each sub-goal as committed.
     subgoals: Vec<u8>,
+    lives: Lives,
     clocks: Vec<Clock>,
     /// Of each unit.
     tallies: Vec<Tally>,

@@ -10,6 +10,7 @@ use super::{
     devices::DeviceState,
     directory::Directory,
     goals::Goals,
+    lives::Lives,
     minds::Minds,
     post::Mail,
     queue::Agenda,
@@ -31,6 +32,7 @@ pub struct Snapshot {
     params: Vec<f64>,
     minds: Minds,
     subgoals: Vec<u8>,
+    lives: Lives,
     clocks: Vec<Clock>,
     tallies: Vec<Tally>,
     cores: Vec<CoreState>,
@@ -78,6 +80,7 @@ impl Engine<'_> {
                 params: self.params.clone(),
                 minds: self.minds.clone(),
                 subgoals: self.subgoals.clone(),
+                lives: self.lives.clone(),
                 clocks: self.clocks.clone(),
                 tallies: self.tallies.clone(),
                 cores: self.cores.clone(),
@@ -109,6 +112,7 @@ impl Engine<'_> {
         let fits = s.params.len() == self.params.len()
             && s.minds.fits(&self.minds, self.mission, &self.cast)
             && s.subgoals.len() == self.subgoals.len()
+            && s.lives.fits(&self.lives)
             && s.clocks.len() == self.clocks.len()
             && s.tallies.len() == self.tallies.len()
             && s.cores.len() == self.cores.len()
@@ -133,7 +137,7 @@ impl Engine<'_> {
         }
         (self.now, self.polled) = (s.t, s.polled);
         (self.params, self.minds, self.subgoals, self.clocks) = (s.params, s.minds, s.subgoals, s.clocks);
-        (self.tallies, self.cores) = (s.tallies, s.cores);
+        (self.lives, self.tallies, self.cores) = (s.lives, s.tallies, s.cores);
         self.devices = s.devices;
         (self.talks, self.directory) = (s.talks, s.directory);
         (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);

@@ -177,11 +177,23 @@ pub enum Event {
     },
     /// A safe action began, and why.
     SafeAction { robot: u32, action: String, reason: String },
-    /// A parameter was changed by an agent.
+    /// A parameter was changed by an agent, or by `operator`.
     Param {
         agent: String,
         param: String,
         #[serde(with = "exact::registers")]
+        registers: Vec<f64>,
+    },
+    /// An operator did something, in these words: `kill` an `agent`, `set` a `param` to `registers`, or `stop`
+    /// the run. An input of the run, like a reading.
+    Input {
+        text: String,
+        operation: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        agent: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        param: Option<String>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty", with = "exact::registers")]
         registers: Vec<f64>,
     },
     /// A remark.

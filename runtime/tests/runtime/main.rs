@@ -7,6 +7,7 @@ mod determinism;
 mod expectations;
 mod faults;
 mod machines;
+mod operator;
 mod plans;
 mod replay;
 mod scheduling;
