@@ -163,12 +163,12 @@ fn lateness(
 ) -> Result<Lateness, Refusal> {
     let Some(path) = &a.lateness else { return Ok(Lateness::new()) };
     files::keep_apart(&a.mission.file, path)?;
+    let apart = || trace.map_or(Ok(()), |t| files::apart(t, path, "the trace goes there"));
+    apart()?;
     prepared.starts()?;
     let lateness = Lateness::into_file(path)?;
-    match trace {
-        Some(trace) => files::apart(path, trace, "the lateness goes there").map(|()| lateness),
-        None => Ok(lateness),
-    }
+    // A trace that was not there yet may be the same file all the same.
+    apart().map(|()| lateness)
 }
 
 /// Robots shown in the table; of more only a summary.
@@ -271,7 +271,8 @@ fn human(
         s += &format!("\n  trace {} ({} kB)\n", t.path, t.bytes.div_ceil(1024));
     }
     if let Some(l) = lateness {
-        s += &format!("\n  {}\n", l.line());
+        let gap = if trace.is_some() { "" } else { "\n" };
+        s += &format!("{gap}  {}\n", l.line());
     }
     s
 }
