@@ -158,6 +158,11 @@ pub const PAGES: &[Page] = &[
         "`soifra plot --agent` takes an agent of every robot (`courier`) or of one (`courier@r1`), `--conversation` the identifier of a conversation or its beginning. Nothing in the trace tells of such a one; the report names the nearest, or what there is.",
     ),
     page(
+        "S9028",
+        "An operator input is not understood",
+        "`soifra run --realtime` takes inputs on standard input, one a line: `kill AGENT@ROBOT` ends an agent, `set NAME=VALUE` changes a parameter of the mission (the value with its unit, as for `--set`), `stop` ends the run with every robot's safe action. Any other line is told and changes nothing, and so is one that comes when the run is over. A line has at most 4096 bytes and is UTF-8. A run whose standard input is not meant for it is given none: `< /dev/null`.",
+    ),
+    page(
         "S9999",
         "A defect of soifra",
         "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files.",

@@ -156,7 +156,7 @@ pub fn split_setting(text: &str) -> Result<(String, String), Refusal> {
 
 /// The values of `--set` for the parameters of a graph: index in [`Graph::params`], value.
 pub fn settings(graph: &Graph, sets: &[(String, String)]) -> Result<Vec<(usize, Value)>, Refusal> {
-    sets.iter().map(|(name, text)| setting(graph, name, text)).collect()
+    sets.iter().map(|(name, text)| setting(graph, "--set", name, text)).collect()
 }
 
 /// Refuses values with which the mission would not pass its checks, as places that overlap.
@@ -177,8 +177,10 @@ pub fn verify_with(graph: &Graph, values: &[(usize, Value)]) -> Result<(), Refus
     }
 }
 
-fn setting(graph: &Graph, name: &str, text: &str) -> Result<(usize, Value), Refusal> {
-    let argument = format!("--set {name}={text}");
+/// The value of a parameter that is set by `given` (`--set`, or an operator's `set`): index in
+/// [`Graph::params`], value.
+pub fn setting(graph: &Graph, given: &str, name: &str, text: &str) -> Result<(usize, Value), Refusal> {
+    let argument = format!("{given} {name}={text}");
     let Some(index) = graph.params.iter().position(|p| &*p.name == name) else {
         let names = || graph.params.iter().map(|p| &*p.name);
         let hint = match did_you_mean(name, names()) {
@@ -196,7 +198,7 @@ fn setting(graph: &Graph, name: &str, text: &str) -> Result<(usize, Value), Refu
             let mut diagnostic =
                 Diagnostic::error("S9011", format!("the value does not fit the parameter: {why}"))
                     .at(param.at, format!("`{name}` is declared here, a {}", param.ty))
-                    .hint(format!("`--set {name}=…` takes {}", expected(&param.ty, graph)));
+                    .hint(format!("`{given} {name}=…` takes {}", expected(&param.ty, graph)));
             if param.at == Span::default() {
                 diagnostic.labels.clear();
             }

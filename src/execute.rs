@@ -8,7 +8,7 @@ use crate::{
 };
 use soifra_graph::{Diagnostic, Graph, Value, span::Source};
 use soifra_platforms::sim::Simulator;
-use soifra_runtime::{Engine, Mission, NoTrace, Outcome, RunReport, Scene, Settings, TraceSink};
+use soifra_runtime::{Engine, Mission, NoTrace, Outcome, Pacer, RunReport, Scene, Settings, TraceSink};
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
 /// Compiles the code of a graph.
@@ -49,14 +49,28 @@ impl<'m> Prepared<'m> {
 
     /// Runs with the records going to `sink`.
     pub fn run_into(&self, sink: &mut dyn TraceSink, stop: &AtomicBool) -> Result<RunReport, Refusal> {
+        self.run_paced(sink, stop, None)
+    }
+
+    /// As [`Prepared::run_into`], at a pace if there is one.
+    pub fn run_paced(
+        &self,
+        sink: &mut dyn TraceSink,
+        stop: &AtomicBool,
+        pacer: Option<&mut dyn Pacer>,
+    ) -> Result<RunReport, Refusal> {
         let sources = || self.mission.graph().sources.clone();
         let mut simulator = Simulator::new(&self.scene).map_err(|why| self.not_simulated(why))?;
         let engine = Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, sink, stop);
-        Ok(engine.map_err(|d| refuse(vec![d], sources()))?.run())
+        let mut engine = engine.map_err(|d| refuse(vec![d], sources()))?;
+        if let Some(pacer) = pacer {
+            engine.paced(pacer);
+        }
+        Ok(engine.run())
     }
 
     /// Refuses a run that cannot start.
-    fn starts(&self) -> Result<(), Refusal> {
+    pub fn starts(&self) -> Result<(), Refusal> {
         let mut simulator = Simulator::new(&self.scene).map_err(|why| self.not_simulated(why))?;
         let (mut sink, stop) = (NoTrace, AtomicBool::new(false));
         match Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, &mut sink, &stop) {
@@ -72,11 +86,13 @@ impl<'m> Prepared<'m> {
         Refusal::about(&path, "S9020", "the mission cannot be set up", why, hint)
     }
 
-    /// Runs with a trace file. Whether the file can be written is known before anything starts.
+    /// Runs with a trace file, at a pace if there is one. Whether the file can be written is known before
+    /// anything starts.
     pub fn run_traced(
         &self,
         path: &str,
         stop: &AtomicBool,
+        pacer: Option<&mut dyn Pacer>,
     ) -> Result<(RunReport, trace_file::Finished), Refusal> {
         // A run that cannot start leaves no file, and none that was there is emptied.
         self.starts()?;
@@ -84,7 +100,7 @@ impl<'m> Prepared<'m> {
         let unwritable = |e: std::io::Error| files::unwritable(path, &e);
         files::make_folder(path).map_err(unwritable)?;
         let mut writer = trace_file::Writer::create(path, &header).map_err(unwritable)?;
-        let mut report = self.run_into(&mut writer, stop)?;
+        let mut report = self.run_paced(&mut writer, stop, pacer)?;
         let finished = writer.finish().or_else(|e| {
             // The last chunk did not go out: what is on disk still counts.
             report.outcome = Outcome::Aborted;

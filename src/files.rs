@@ -106,16 +106,20 @@ pub fn write(path: &str, bytes: &[u8]) -> Result<(), Refusal> {
 
 /// Refuses to write what was made of a file over that file.
 pub fn keep_apart(input: &str, output: &str) -> Result<(), Refusal> {
-    match (fs::canonicalize(input), fs::canonicalize(output)) {
-        (Ok(a), Ok(b)) if a == b => Err(Refusal::about(
-            output,
-            "S9012",
-            "the file cannot be written",
-            "it is the file that is read",
-            "name another file",
-        )),
-        _ => Ok(()),
+    apart(input, output, "it is the file that is read")
+}
+
+/// Refuses to write `output` when it is the same file as `other`, in these words.
+pub fn apart(other: &str, output: &str, words: &str) -> Result<(), Refusal> {
+    let same = match (fs::canonicalize(other), fs::canonicalize(output)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => other == output,
+    };
+    if same {
+        let title = "the file cannot be written";
+        return Err(Refusal::about(output, "S9012", title, words, "name another file"));
     }
+    Ok(())
 }
 
 /// Makes the folder of a file to be written.

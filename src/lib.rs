@@ -19,6 +19,7 @@ mod last_resort;
 mod mermaid;
 pub mod output;
 pub mod plot;
+pub mod realtime;
 pub mod relative;
 pub mod report;
 pub mod seeds;

@@ -1,6 +1,8 @@
 //! The wall clock. The only place that reads it: what it says goes into `host` objects and onto the
-//! terminal, never into a run, a trace or a digest.
+//! terminal, never into a run, a trace or a digest. It says when an instant of a run that is held to it is due,
+//! and never what happens at that instant.
 
+use soifra_runtime::Time;
 use std::time::Instant;
 
 /// Measures how long something took.
@@ -17,5 +19,10 @@ impl Stopwatch {
     /// Seconds since the start.
     pub fn seconds(self) -> f64 {
         self.0.elapsed().as_secs_f64()
+    }
+
+    /// Time since the start.
+    pub fn time(self) -> Time {
+        Time(i64::try_from(self.0.elapsed().as_nanos()).unwrap_or(i64::MAX))
     }
 }

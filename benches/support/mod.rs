@@ -146,8 +146,9 @@ pub fn run(prepared: &execute::Prepared<'_>) -> (RunReport, f64) {
 pub fn run_traced(prepared: &execute::Prepared<'_>, name: &str) -> (RunReport, f64) {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let watch = Stopwatch::start();
-    let (report, _) =
-        prepared.run_traced(&path.to_string_lossy(), &AtomicBool::new(false)).unwrap_or_else(|r| refused(r));
+    let (report, _) = prepared
+        .run_traced(&path.to_string_lossy(), &AtomicBool::new(false), None)
+        .unwrap_or_else(|r| refused(r));
     (report, watch.seconds())
 }
 

@@ -15,7 +15,7 @@ pub mod trace;
 
 pub use engine::{Engine, Outcome, RunReport, Snapshot};
 pub use mission::{Mission, Settings};
-pub use ports::{Platform, Reading, Readings, Report, WorldTruth};
+pub use ports::{Input, Operation, Pacer, Platform, Reading, Readings, Report, WorldTruth};
 pub use scene::Scene;
 pub use time::Time;
 pub use trace::{Event, NoTrace, Record, Thread, TraceSink};

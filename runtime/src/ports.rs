@@ -1,7 +1,8 @@
 //! The port contract: what the runtime asks of whatever moves. The simulator and drivers implement
-//! [`Platform`]; nothing above it knows which of them it talks to.
+//! [`Platform`]; nothing above it knows which of them it talks to. And what it asks of whoever keeps the time
+//! ([`Pacer`]), through whom an operator acts on a run.
 
-use crate::time::Time;
+use crate::{time::Time, trace::Event};
 
 /// Readings handed over by one poll. Registers of all readings lie in one arena.
 #[derive(Debug, Default)]
@@ -133,4 +134,69 @@ pub trait WorldTruth {
     fn total_collisions(&self) -> u32;
     /// Movers: name and pose, for traces and pictures.
     fn movers(&self) -> Vec<(String, [f64; 7])>;
+}
+
+/// Holds a run to a pace: that of the wall clock, or of a recording. Without one a run goes on as fast as it is
+/// computed. A pacer decides when an instant happens, never what happens at it: the inputs that it hands over
+/// are recorded, and nothing else of it reaches the run.
+pub trait Pacer {
+    /// The run begins, at `now`.
+    fn begin(&mut self, _now: Time) {}
+
+    /// The run is about to go from the instant `now` to the later instant `next`. Returns the instant to go to,
+    /// once that is due: `next`, or, when an operator does something before that, an earlier one after `now`,
+    /// with what is done at it put into `inputs`. Returns at once when the run is to stop.
+    fn pace(&mut self, now: Time, next: Time, inputs: &mut Vec<Input>) -> Time;
+}
+
+/// Something an operator does to a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Input {
+    /// In the operator's words.
+    pub text: String,
+    /// What it means.
+    pub operation: Operation,
+}
+
+/// What an operator can do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Operation {
+    /// An agent dies.
+    Kill {
+        /// `agent@robot`.
+        agent: String,
+    },
+    /// A parameter of the mission is changed.
+    Set {
+        /// Its name.
+        param: String,
+        /// Its new value; [`crate::Mission::parameter`] makes them.
+        registers: Vec<f64>,
+    },
+    /// The run ends, with every robot's safe action.
+    Stop,
+}
+
+impl Input {
+    /// As it is recorded.
+    pub fn event(&self) -> Event {
+        let (operation, agent, param, registers) = match &self.operation {
+            Operation::Kill { agent } => ("kill", Some(agent.clone()), None, Vec::new()),
+            Operation::Set { param, registers } => ("set", None, Some(param.clone()), registers.clone()),
+            Operation::Stop => ("stop", None, None, Vec::new()),
+        };
+        Event::Input { text: self.text.clone(), operation: operation.into(), agent, param, registers }
+    }
+
+    /// From its record.
+    pub fn of(event: &Event) -> Option<Input> {
+        let Event::Input { text, operation, agent, param, registers } = event else { return None };
+        let operation = match operation.as_str() {
+            "kill" => Operation::Kill { agent: agent.clone()? },
+            "set" => Operation::Set { param: param.clone()?, registers: registers.clone() },
+            "stop" => Operation::Stop,
+            _ => return None,
+        };
+        Some(Input { text: text.clone(), operation })
+    }
 }

@@ -6,6 +6,7 @@ use crate::{
     exit::Exit,
     files, graph_file, interrupt,
     output::{self, Format},
+    realtime::{Lateness, Operator, Summary, WallPacer},
     report::{
         JsonDiagnostic, Refusal,
         table::{figure, table},
@@ -14,13 +15,13 @@ use crate::{
 };
 use clap::{Args, ValueHint};
 use serde::Serialize;
-use soifra_runtime::RunReport;
+use soifra_runtime::{NoTrace, Pacer, RunReport};
 use std::collections::BTreeMap;
 
 /// Arguments.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  soifra run patrol.soi --seed 7\n  soifra run patrol.soi --set critical_distance=3m --set rules=careful --trace none"
+    after_help = "Examples:\n  soifra run patrol.soi --seed 7\n  soifra run patrol.soi --set critical_distance=3m --set rules=careful --trace none\n  soifra run patrol.soi --realtime --lateness out/lateness.csv"
 )]
 pub struct Arguments {
     #[command(flatten)]
@@ -37,6 +38,13 @@ pub struct Arguments {
     /// Where the trace goes, or `none` [default: out/MISSION-SEED.mcap]
     #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
     trace: Option<String>,
+    /// Hold the run to the wall clock; on standard input an operator can `kill AGENT@ROBOT`, `set NAME=VALUE` and
+    /// `stop`, one a line
+    #[arg(long)]
+    realtime: bool,
+    /// Where the lateness of each instant goes, as CSV
+    #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath, requires = "realtime")]
+    lateness: Option<String>,
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -68,6 +76,7 @@ struct Host {
     wall_time_s: f64,
     real_time_factor: Option<f64>,
     threads: usize,
+    lateness: Option<Summary>,
 }
 
 /// Runs the command.
@@ -95,22 +104,39 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         Some(path) => Some(path.to_string()),
         None => Some(format!("out/{}-{}.mcap", mission.graph().name, a.seed)),
     };
+    if let Some(path) = &path {
+        files::keep_apart(&a.mission.file, path)?;
+    }
+    let mut pacer = match a.realtime {
+        true => {
+            let lateness = lateness(a, &prepared, path.as_deref())?;
+            let operator = Operator::at_standard_input(&mission, prepared.scene());
+            Some(WallPacer::new(&stop, operator, lateness))
+        }
+        false => None,
+    };
+    let pace = pacer.as_mut().map(|p| p as &mut dyn Pacer);
     let watch = Stopwatch::start();
     let (report, trace) = match path {
         Some(path) => {
-            files::keep_apart(&a.mission.file, &path)?;
-            let (report, finished) = prepared.run_traced(&path, &stop)?;
+            let (report, finished) = prepared.run_traced(&path, &stop, pace)?;
             (report, Some(Trace { path, digest: finished.digest, bytes: finished.bytes }))
         }
-        None => (prepared.run(&stop)?, None),
+        None => (prepared.run_paced(&mut NoTrace, &stop, pace)?, None),
     };
     let wall_time_s = watch.seconds();
-    let exit = execute::exit_of(&report);
+    let (lateness, unwritten) = pacer.map(WallPacer::finish).unzip();
+    let mut exit = execute::exit_of(&report);
+    if let Some(refusal) = unwritten.flatten() {
+        // The run is what it is; what was asked for beside it is not there.
+        refusal.findings.print();
+        exit = exit.max(Exit::Aborted);
+    }
     for fault in &report.faults {
         output::note(&format!("fault: {fault}"));
     }
     match a.format {
-        Format::Human => output::print(&human(&report, &sets, trace.as_ref()))?,
+        Format::Human => output::print(&human(&report, &sets, trace.as_ref(), lateness.as_ref()))?,
         Format::Json => output::print_json(&Document {
             schema: output::SCHEMA,
             graph_digest,
@@ -121,11 +147,28 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
                 wall_time_s,
                 real_time_factor: (wall_time_s > 0.0).then(|| report.sim_time_s / wall_time_s),
                 threads,
+                lateness,
             },
             diagnostics: compiled.findings.to_json(),
         })?,
     }
     Ok(exit)
+}
+
+/// Where the lateness of a run goes. Nothing is written before it is known that the run can start.
+fn lateness(
+    a: &Arguments,
+    prepared: &execute::Prepared<'_>,
+    trace: Option<&str>,
+) -> Result<Lateness, Refusal> {
+    let Some(path) = &a.lateness else { return Ok(Lateness::new()) };
+    files::keep_apart(&a.mission.file, path)?;
+    let apart = || trace.map_or(Ok(()), |t| files::apart(t, path, "the trace goes there"));
+    apart()?;
+    prepared.starts()?;
+    let lateness = Lateness::into_file(path)?;
+    // A trace that was not there yet may be the same file all the same.
+    apart().map(|()| lateness)
 }
 
 /// Robots shown in the table; of more only a summary.
@@ -134,7 +177,12 @@ const ROBOTS: usize = 40;
 /// More contacts than this are only counted.
 const CONTACTS: usize = 10;
 
-fn human(r: &RunReport, sets: &[(String, String)], trace: Option<&Trace>) -> String {
+fn human(
+    r: &RunReport,
+    sets: &[(String, String)],
+    trace: Option<&Trace>,
+    lateness: Option<&Summary>,
+) -> String {
     let why = if r.reason.is_empty() { String::new() } else { format!(" ({})", r.reason) };
     let set: String = sets.iter().map(|(name, value)| format!(", {name}={value}")).collect();
     let mut s = format!(
@@ -221,6 +269,10 @@ fn human(r: &RunReport, sets: &[(String, String)], trace: Option<&Trace>) -> Str
     }
     if let Some(t) = trace {
         s += &format!("\n  trace {} ({} kB)\n", t.path, t.bytes.div_ceil(1024));
+    }
+    if let Some(l) = lateness {
+        let gap = if trace.is_some() { "" } else { "\n" };
+        s += &format!("{gap}  {}\n", l.line());
     }
     s
 }

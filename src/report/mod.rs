@@ -6,6 +6,7 @@ pub mod timing;
 
 use crate::{exit::Exit, output};
 use excerpt::Excerpt;
+pub(crate) use excerpt::clean;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, Severity as Weight, SourceCode};
 use serde::Serialize;
 use soifra_graph::{Diagnostic, Label, Severity, Span, span::Source};

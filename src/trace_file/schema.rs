@@ -155,6 +155,16 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
         &[("robot", "index"), ("agent", "text"), ("device", "text"), ("unit", "text?"), ("waiting", "index")],
     ),
     ("trouble", &[("target", "text"), ("text", "text")]),
+    (
+        "input",
+        &[
+            ("text", "text"),
+            ("operation", "text"),
+            ("agent", "text?"),
+            ("param", "text?"),
+            ("registers", "numbers?"),
+        ],
+    ),
 ];
 
 /// Place of an event's kind in [`KINDS`].
@@ -190,6 +200,7 @@ pub(crate) fn kind(event: &Event) -> usize {
         Event::Life { .. } => 27,
         Event::Device { .. } => 28,
         Event::Trouble { .. } => 29,
+        Event::Input { .. } => 30,
     }
 }
 

@@ -64,6 +64,9 @@ fn every_field_of_a_run_is_told() {
         ]);
         seen.extend(found(&json(&o), &["metrics", "params"], &["robots[].final.", "diagnostics["]));
     }
+    let hop = file(&dir, "hop.soi", super::realtime::HOP);
+    let o = soifra(&["run", &hop, "--realtime", "--trace", "none", "--format", "json"]);
+    seen.extend(found(&json(&o), &["metrics", "params"], &["robots[].final.", "diagnostics["]));
     assert_eq!(seen, told("run"));
 }
 

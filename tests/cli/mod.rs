@@ -6,6 +6,7 @@ mod documents;
 mod fmt;
 mod graph;
 mod plot;
+mod realtime;
 mod run;
 mod sweep;
 mod test;

@@ -86,6 +86,7 @@ pub fn scene() -> Scene {
             robot("r2", (0.18, 0.2), (0.09, 0.125)),
             robot("r3", (0.01, 0.05), (0.1, 0.235)),
         ],
+        faults: Vec::new(),
     }
 }
 
@@ -174,7 +175,7 @@ pub fn every_kind() -> Vec<Event> {
         Event::Mover { name: "block[0]".into(), pose: pose(1.0, 1e-17, 2.0) },
         Event::Mover { name: text(), pose: [f64::NEG_INFINITY; 7] },
         Event::Contact { robot: 0, other: Some(2), with: "r3".into(), begin: true },
-        Event::Goal { goal: "arrive".into(), robot: None, status: "active".into() },
+        Event::Goal { goal: "arrive".into(), robot: None, status: "active".into(), reason: None },
         Event::Expectation { index: 0, robot: Some(1), held: false, margin: Some(-0.1) },
         Event::Expectation { index: 1, robot: None, held: true, margin: Some(f64::INFINITY) },
         Event::Fault { robot: None, agent: agent(), text: text() },
@@ -224,6 +225,13 @@ pub fn every_kind() -> Vec<Event> {
         },
         Event::Life { robot: 0, agent: agent(), status: "dead".into(), reason: text() },
         Event::Device { robot: 0, agent: agent(), device: "camera".into(), unit: None, waiting: 2 },
+        Event::Input {
+            text: text(),
+            operation: "set".into(),
+            agent: None,
+            param: Some("speed".into()),
+            registers: numbers(),
+        },
     ]
 }
 
@@ -231,7 +239,7 @@ pub fn every_kind() -> Vec<Event> {
 pub fn run(steps: u32, seconds: u32) -> Vec<Record> {
     let scene = scene();
     let mut log = Log { records: Vec::new(), now: Time::ZERO };
-    log.push(&[], Event::Goal { goal: "arrive".into(), robot: None, status: "active".into() });
+    log.push(&[], Event::Goal { goal: "arrive".into(), robot: None, status: "active".into(), reason: None });
     let total = steps * seconds;
     for i in 0..=total {
         log.now = Time(i64::from(i) * 1_000_000_000 / i64::from(steps));

@@ -72,7 +72,7 @@ fn every_message_fits_its_schema() {
         }
         *seen.entry(schema.name.clone()).or_default() += 1;
     }
-    assert_eq!(seen.len(), 29 + 3, "{seen:?}");
+    assert_eq!(seen.len(), 30 + 3, "{seen:?}");
     assert_eq!(seen["foxglove.FrameTransform"], 2);
     assert_eq!(seen["soifra.SafeAction"], 1);
 }

@@ -20,8 +20,9 @@ impl Engine<'_> {
         };
         // The last one, which every run ends with, says nothing about the run.
         let safe_actions = self.actuators.safe_actions.clone();
+        let cause = if why == INTERRUPTED { self.operator.cause() } else { None };
         for r in 0..self.scene.bodies().len() {
-            self.safe_action(r as u32, &why, None);
+            self.safe_action(r as u32, &why, cause);
         }
         self.actuators.safe_actions = safe_actions;
         self.judge_expectations(self.now, Occasion::End);
@@ -34,7 +35,7 @@ impl Engine<'_> {
         }
         let metrics = self.metrics();
         let (outcome, reason) = (end.outcome.name().to_string(), end.reason.clone());
-        self.recorder.record(self.now, None, || Event::End { outcome, reason });
+        self.recorder.record(self.now, cause, || Event::End { outcome, reason });
         if let Some(error) = self.recorder.failed.take()
             && end.outcome != Outcome::Aborted
         {

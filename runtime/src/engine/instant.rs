@@ -33,13 +33,14 @@ impl Engine<'_> {
         if !self.resumed {
             self.open_planner();
         }
+        self.operator.begin(self.now);
         let end = loop {
             // The instant of a snapshot is over.
             if !std::mem::take(&mut self.resumed) {
                 if let Some(end) = self.instant() {
                     break end;
                 }
-                if self.stop.load(Ordering::Relaxed) {
+                if self.stop.load(Ordering::Relaxed) || self.operator.stopped() {
                     break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
                 }
             }
@@ -48,9 +49,9 @@ impl Engine<'_> {
             };
             if next > self.now {
                 self.snapshot();
-                if !self.idle(next) {
+                let Some(next) = self.pace(next).filter(|t| self.idle(*t)) else {
                     break End { outcome: Outcome::Aborted, reason: INTERRUPTED.into() };
-                }
+                };
                 self.events = 0;
                 self.now = next;
             }
@@ -87,6 +88,7 @@ impl Engine<'_> {
             self.fail(None, "platform", text, None);
         }
         self.poll();
+        self.operate_all();
         self.arrive();
         self.activate_all();
         self.forget_talks();
@@ -451,9 +453,7 @@ impl Engine<'_> {
             }
             self.reset.clear();
             let new = std::mem::take(&mut self.new_params);
-            let mut heard: Vec<u32> = Vec::new();
             for (param, registers) in &new {
-                heard.extend(self.on_param.get(param).into_iter().flatten());
                 if let Some(range) = self.mission.params.range(*param as usize)
                     && let Some(slot) = self.params.get_mut(range)
                     && slot.len() == registers.len()
@@ -461,13 +461,9 @@ impl Engine<'_> {
                     slot.copy_from_slice(registers);
                 }
             }
-            heard.sort_unstable();
-            heard.dedup();
-            for unit in heard {
-                self.queue.put(self.now + HEARD, Scheduled::Heard(unit));
-            }
             if !new.is_empty() {
-                self.params_changed(None);
+                let set: Vec<u32> = new.into_iter().map(|(param, _)| param).collect();
+                self.params_set(&set, None);
             }
             self.workers = workers;
             self.outcomes = outcomes;
@@ -476,6 +472,17 @@ impl Engine<'_> {
                 self.releases = releases;
             }
         }
+    }
+
+    /// These parameters have been set: who subscribes to them hears of it, and other plans may hold.
+    pub(super) fn params_set(&mut self, params: &[u32], cause: Option<u64>) {
+        let mut heard: Vec<u32> = params.iter().filter_map(|p| self.on_param.get(p)).flatten().copied().collect();
+        heard.sort_unstable();
+        heard.dedup();
+        for unit in heard {
+            self.queue.put(self.now + HEARD, Scheduled::Heard(unit));
+        }
+        self.params_changed(cause);
     }
 
     fn prepare_wave(&mut self, releases: &[Release]) {

@@ -1,7 +1,7 @@
 //! The engine: runs a mission on a platform, in virtual time.
 //!
-//! At an instant, in this order: the platform hands over readings and reports; outputs that were put off
-//! and letters arrive; units are released and evaluated, higher priority first, then in order of robot,
+//! At an instant, in this order: the platform hands over readings and reports; an operator's inputs take
+//! effect; outputs that were put off and letters arrive; units are released and evaluated, higher priority first, then in order of robot,
 //! agent and unit; arbiters decide and commands are sent; goals, expectations and the done condition are
 //! judged. Activations of one instant see other agents as they were before it: what they publish arrives
 //! at least a microsecond later, and a parameter they set holds from the next activations on. Events are
@@ -26,6 +26,7 @@ mod judge;
 mod lives;
 mod log;
 mod minds;
+mod operator;
 mod planner;
 mod post;
 mod queue;
@@ -55,6 +56,7 @@ use goals::Goals;
 use judge::Judge;
 use lives::Lives;
 use minds::Minds;
+use operator::Operator;
 use planner::Planner;
 use post::Mail;
 use queue::Queue;
@@ -79,6 +81,7 @@ pub struct Engine<'m> {
     platform: &'m mut dyn Platform,
     recorder: Recorder<'m>,
     stop: &'m AtomicBool,
+    operator: Operator<'m>,
     seed: u64,
     texts: Texts,
     cast: Cast,

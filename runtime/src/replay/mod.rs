@@ -1,7 +1,8 @@
 //! Replay: runs a mission again and compares every record with those of an earlier run.
 //!
 //! [`verify`] feeds the recorded inputs (readings, contacts, poses, losses) to the graph, so that it needs
-//! no simulator and no robot; [`resimulate`] runs on a platform again and compares the inputs as well.
+//! no simulator and no robot; [`resimulate`] runs on a platform again and compares the inputs as well. What an
+//! operator did to the run is done again by both.
 //! Both hold only as much of the recording in memory as lies between two inputs.
 
 mod recorded;
@@ -17,7 +18,7 @@ use std::{
     fmt,
     sync::atomic::{AtomicBool, Ordering},
 };
-use tape::Tape;
+use tape::{Again, Tape};
 
 /// Why a replay is not the run that was recorded.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,11 +116,13 @@ fn compare(
     snapshot: Option<Snapshot>,
 ) -> Result<RunReport, ReplayError> {
     let mut sink = Compare { tape, difference: None };
+    let mut again = Again(tape);
     let mut engine =
         Engine::new(mission, settings, scene, platform, &mut sink, stop).map_err(ReplayError::Start)?;
     if snapshot.is_some_and(|s| !engine.resume(s)) {
         return Err(ReplayError::Snapshot);
     }
+    engine.paced(&mut again);
     let report = engine.run();
     if let Some(d) = sink.difference {
         return Err(ReplayError::Difference(d));

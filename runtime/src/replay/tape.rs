@@ -3,6 +3,7 @@
 use crate::{
     Event, Record, Time,
     engine::report::{INTERRUPTED, PLATFORM},
+    ports::{Input, Pacer},
 };
 use std::{cell::RefCell, collections::VecDeque};
 
@@ -15,6 +16,8 @@ struct State<'r> {
     ahead: VecDeque<Record>,
     /// Inputs that were read but not played.
     inputs: VecDeque<Record>,
+    /// What an operator did, and is still to do again.
+    operator: VecDeque<(Time, Input)>,
     /// Time of the last record that was read.
     read: Option<Time>,
     /// When the operator stopped the run.
@@ -29,6 +32,7 @@ impl<'r> Tape<'r> {
             source: Box::new(source),
             ahead: VecDeque::new(),
             inputs: VecDeque::new(),
+            operator: VecDeque::new(),
             read: None,
             interrupted: None,
             over: None,
@@ -101,6 +105,20 @@ impl<'r> Tape<'r> {
     }
 }
 
+/// Whoever operated the recorded run does the same again, at the same instants.
+pub(super) struct Again<'t, 'r>(pub &'t Tape<'r>);
+
+impl Pacer for Again<'_, '_> {
+    fn pace(&mut self, _: Time, next: Time, inputs: &mut Vec<Input>) -> Time {
+        self.0.pull(next);
+        let mut s = self.0.0.borrow_mut();
+        let Some(at) = s.operator.front().map(|o| o.0).filter(|t| *t <= next) else { return next };
+        let together = s.operator.iter().take_while(|o| o.0 == at).count();
+        inputs.extend(s.operator.drain(..together).map(|o| o.1));
+        at
+    }
+}
+
 impl State<'_> {
     fn read_one(&mut self) {
         if self.over.is_some() {
@@ -121,6 +139,9 @@ impl State<'_> {
             }
             _ => false,
         };
+        if let Some(input) = Input::of(&r.event) {
+            self.operator.push_back((r.t, input));
+        }
         if input {
             self.inputs.push_back(r.clone());
         }

@@ -177,7 +177,7 @@ pub enum Event {
     },
     /// A safe action began, and why.
     SafeAction { robot: u32, action: String, reason: String },
-    /// A parameter was changed by an agent.
+    /// A parameter was changed by an agent, or by `operator`.
     Param {
         agent: String,
         param: String,
@@ -186,6 +186,18 @@ pub enum Event {
     },
     /// A declared fault strikes a sensor, `robot.sensor`.
     Trouble { target: String, text: String },
+    /// An operator did something, in these words: `kill` an `agent`, `set` a `param` to `registers`, or `stop`
+    /// the run. An input of the run, like a reading.
+    Input {
+        text: String,
+        operation: String,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        agent: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        param: Option<String>,
+        #[serde(default, skip_serializing_if = "Vec::is_empty", with = "exact::registers")]
+        registers: Vec<f64>,
+    },
     /// A remark.
     Note { robot: u32, agent: String, text: String },
     /// World truth of a robot, for pictures, reports and replays; `path_m` is the length of its path so far.

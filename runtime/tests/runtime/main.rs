@@ -8,6 +8,7 @@ mod determinism;
 mod expectations;
 mod faults;
 mod machines;
+mod operator;
 mod plans;
 mod replay;
 mod scheduling;

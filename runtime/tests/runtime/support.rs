@@ -3,8 +3,8 @@
 use soifra_graph::{Graph, Value};
 use soifra_lang::{CheckOptions, Loader, check};
 use soifra_runtime::{
-    Engine, Event, Mission, Platform, Readings, Record, Report, RunReport, Scene, Settings, Snapshot, Time,
-    TraceSink, WorldTruth, replay, scene::RobotScene,
+    Engine, Event, Mission, Pacer, Platform, Readings, Record, Report, RunReport, Scene, Settings, Snapshot,
+    Time, TraceSink, WorldTruth, replay, scene::RobotScene,
 };
 use std::{
     collections::BTreeMap,
@@ -85,7 +85,7 @@ pub struct World {
     pub truth: bool,
     /// The operator stops the run while nothing happens.
     pub stops_when_idle: bool,
-    stop: Arc<AtomicBool>,
+    pub stop: Arc<AtomicBool>,
     pub sent: Vec<(Time, u32, u32, Vec<f64>, Time)>,
     pub safe: Vec<(Time, u32)>,
 }
@@ -258,13 +258,27 @@ pub fn run(text: &str) -> Ran {
 }
 
 pub fn run_with(mission: &Mission, settings: &Settings, prepare: impl FnOnce(&mut World)) -> Ran {
+    run_paced(mission, settings, prepare, None)
+}
+
+/// A run that is held to a pace.
+pub fn run_paced(
+    mission: &Mission,
+    settings: &Settings,
+    prepare: impl FnOnce(&mut World),
+    pacer: Option<&mut dyn Pacer>,
+) -> Ran {
     let scene = mission.scene(settings).unwrap_or_else(|e| panic!("{e:?}"));
     let mut world = World::new(&scene);
     prepare(&mut world);
     let mut sink = Watcher::default();
     let stop = world.stop.clone();
     let engine = Engine::new(mission, settings, &scene, &mut world, &mut sink, &stop);
-    let report = engine.unwrap_or_else(|e| panic!("{e:?}")).run();
+    let mut engine = engine.unwrap_or_else(|e| panic!("{e:?}"));
+    if let Some(pacer) = pacer {
+        engine.paced(pacer);
+    }
+    let report = engine.run();
     let Watcher { records, snapshots, .. } = sink;
     for text in snapshots {
         goes_on(mission, settings, &text, &records, &report);
