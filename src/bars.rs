@@ -34,6 +34,9 @@ pub struct Study {
     /// Parameters, each with one value or several separated by commas.
     #[serde(default)]
     pub set: BTreeMap<String, String>,
+    /// Test of the mission's file whose faults happen.
+    #[serde(default)]
+    pub test: Option<String>,
     /// Platforms in place of the mission's own.
     #[serde(default)]
     pub platforms: Vec<String>,
@@ -129,7 +132,7 @@ impl Study {
             )
         })?;
         let sets = self.set.iter().map(|(n, v)| (n.clone(), sweep::values(v))).collect();
-        Ok(Plan { platforms: self.platforms.clone(), sets, seeds })
+        Ok(Plan { platforms: self.platforms.clone(), test: self.test.clone(), sets, seeds })
     }
 
     /// Runs everything in pieces that are saved in `folder`; pieces that are there already, of the same
@@ -166,7 +169,9 @@ impl Study {
         let platforms =
             if plan.platforms.is_empty() { vec![None] } else { plan.platforms.iter().map(Some).collect() };
         for p in platforms {
-            text += &graph_file::digest(&compile::compile(&self.mission, p.map(String::as_str))?.graph);
+            let (platform, test) = (p.map(String::as_str), self.test.as_deref());
+            let compiled = compile::compile_with(&self.mission, platform, None, test)?;
+            text += &graph_file::digest(&compiled.graph);
         }
         Ok(graph_file::sha256(text.as_bytes())[..12].to_string())
     }

@@ -53,6 +53,9 @@ pub struct Mission {
     /// The mission that is meant, in a file with several [default: the first]
     #[arg(long, value_name = "NAME")]
     pub mission: Option<String>,
+    /// Let the faults of this test happen; its mission unless `--mission` names one
+    #[arg(long, value_name = "NAME")]
+    test: Option<String>,
     /// Run every robot on this platform profile
     #[arg(long, value_name = "PROFILE")]
     pub platform: Option<String>,
@@ -61,7 +64,12 @@ pub struct Mission {
 impl Mission {
     /// Compiles it.
     pub fn compile(&self) -> Result<compile::Compiled, Refusal> {
-        compile::compile_mission(&self.file, self.platform.as_deref(), self.mission.as_deref())
+        compile::compile_with(
+            &self.file,
+            self.platform.as_deref(),
+            self.mission.as_deref(),
+            self.test.as_deref(),
+        )
     }
 }
 

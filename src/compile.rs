@@ -43,14 +43,42 @@ pub fn compile_mission(
     platform: Option<&str>,
     mission: Option<&str>,
 ) -> Result<Compiled, Refusal> {
-    let checked = check(path, platform, mission)?;
-    if let (None, Some(name)) = (&checked.graph, mission) {
-        let hint = match did_you_mean(name, checked.missions.iter().map(String::as_str)) {
+    compile_with(path, platform, mission, None)
+}
+
+/// As [`compile_mission`], with the faults that the test called `test` declares. Without a name, the mission is
+/// the one that the test runs.
+pub fn compile_with(
+    path: &str,
+    platform: Option<&str>,
+    mission: Option<&str>,
+    test: Option<&str>,
+) -> Result<Compiled, Refusal> {
+    let options = CheckOptions {
+        platform: platform.map(str::to_string),
+        mission: mission.map(str::to_string),
+        test: test.map(str::to_string),
+        ..CheckOptions::default()
+    };
+    let checked = check_with(path, &options, &mut Vec::new())?;
+    let missing = |option: &str, what: &str, name: &str, known: Vec<&str>| {
+        let hint = match did_you_mean(name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("its missions are {}", checked.missions.join(", ")),
+            None if known.is_empty() => format!("the file has no {what}"),
+            None => format!("its {what}s are {}", known.join(", ")),
         };
-        let title = format!("there is no mission `{name}`");
-        return Err(Refusal::about(&format!("--mission {name}"), "S0201", title, "not in this file", &hint));
+        let title = format!("there is no {what} `{name}`");
+        Refusal::about(&format!("{option} {name}"), "S0201", title, "not in this file", &hint)
+    };
+    if let Some(name) = test
+        && !checked.tests.iter().any(|t| *t.name == *name)
+    {
+        let known = checked.tests.iter().map(|t| &*t.name).collect();
+        return Err(missing("--test", "test", name, known));
+    }
+    if let (None, Some(name)) = (&checked.graph, mission) {
+        let known = checked.missions.iter().map(String::as_str).collect();
+        return Err(missing("--mission", "mission", name, known));
     }
     match checked.graph {
         Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
@@ -61,23 +89,6 @@ pub fn compile_mission(
             "it declares things for missions to import",
             "name a file with a line that begins `mission NAME`",
         )),
-    }
-}
-
-/// Compiles the mission of a test, with the faults that the test declares.
-pub fn compile_test(path: &str, mission: &str, test: &str) -> Result<Compiled, Refusal> {
-    let options = CheckOptions {
-        mission: Some(mission.to_string()),
-        test: Some(test.to_string()),
-        ..CheckOptions::default()
-    };
-    let checked = check_with(path, &options, &mut Vec::new())?;
-    match checked.graph {
-        Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
-        None => {
-            let what = format!("the mission `{mission}` of a test is not there");
-            Err(Refusal::about(path, "S0701", what, "in this file", "write its name as it is declared"))
-        }
     }
 }
 

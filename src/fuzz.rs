@@ -52,7 +52,9 @@ pub fn fuzz_graph(data: &[u8]) {
         if !faults(&graph).is_empty() {
             continue;
         }
-        crate::graph_view::svg(&graph);
+        for show in [crate::graph_view::Show::Behaviour, crate::graph_view::Show::Agents] {
+            crate::graph_view::svg(&graph, show);
+        }
         let Ok(mission) = Mission::load(graph) else { continue };
         let _ = mission.scene(&Settings { seed: 1, params: BTreeMap::new(), threads: 1 });
     }

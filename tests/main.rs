@@ -1,5 +1,6 @@
 //! The integration tests, one binary: `tests/<area>/` are its modules.
 
+mod agents;
 mod bars;
 mod cli;
 mod corpus;

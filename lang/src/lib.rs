@@ -18,7 +18,7 @@ mod typed;
 mod unseen;
 mod value;
 
-pub use check::verify;
+pub use check::{Allotted, allocation, verify};
 pub use explain::{Explanation, explain, explanations};
 pub use format::format;
 pub use modules::Loader;
@@ -34,6 +34,8 @@ pub struct Checked {
     pub graph: Option<Graph>,
     /// The file's missions, in order.
     pub missions: Vec<String>,
+    /// Platform profiles that a robot could be, those of the file and of the library.
+    pub platforms: Vec<String>,
     /// Every finding, by file and position; errors and warnings.
     pub diagnostics: Vec<Diagnostic>,
     /// Sources that spans refer to.
@@ -66,7 +68,12 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     let mut program = modules::Program::load(path, text, loader);
     let mut diagnostics = std::mem::take(&mut program.errors);
     let decls = decls::Decls::collect(&program, &mut diagnostics);
+    // A test says which mission it is about.
+    let run = decls.tests.iter().find(|t| options.test.as_deref() == Some(&*t.name.name));
+    let run = run.and_then(|t| t.run.first()).map(|m| m.name.to_string());
+    let options = &CheckOptions { mission: options.mission.clone().or(run), ..options.clone() };
     let missions: Vec<String> = decls.root_missions().map(|m| m.name.name.to_string()).collect();
+    let platforms: Vec<String> = decls.platforms.keys().map(|p| p.to_string()).collect();
     if let Some(name) = &options.mission
         && !decls.missions.iter().any(|(_, m)| *m.name.name == **name)
     {
@@ -74,6 +81,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         return Checked {
             graph: None,
             missions,
+            platforms,
             diagnostics,
             sources,
             tests: Vec::new(),
@@ -133,7 +141,7 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
         graph = None;
     }
     let sources = std::mem::take(&mut program.sources);
-    Checked { graph, missions, diagnostics, sources, tests, timings }
+    Checked { graph, missions, platforms, diagnostics, sources, tests, timings }
 }
 
 /// What is wrong only with the faults of a test.
@@ -147,7 +155,9 @@ fn of_tests(
     for t in decls.tests.iter().filter(|t| !t.faults.is_empty()) {
         let (mission, test) = (t.run.first().map(|m| m.name.to_string()), Some(t.name.name.to_string()));
         let mut here = Vec::new();
-        if let Some(g) = lower::lower(program, decls, &lower::Choice { mission, test, ..first.clone() }, &mut here) {
+        if let Some(g) =
+            lower::lower(program, decls, &lower::Choice { mission, test, ..first.clone() }, &mut here)
+        {
             here.extend(verify(&g));
         }
         found.extend(here.into_iter().filter(|d| !known.contains(d)));

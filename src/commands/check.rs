@@ -6,6 +6,7 @@ use crate::{
     output::{self, Format},
     report::{
         JsonDiagnostic, Refusal,
+        matrix::{self, Cell},
         timing::{JsonTiming, timing},
     },
 };
@@ -28,6 +29,9 @@ pub struct Arguments {
     /// Print what is asked of each core, and the longest response times
     #[arg(long)]
     timing: bool,
+    /// Print which missions work on which platforms, and why not
+    #[arg(long)]
+    matrix: bool,
     /// What to print on standard output
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -60,6 +64,8 @@ struct File {
     warnings: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     timing: Option<Vec<JsonTiming>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    matrix: Option<Vec<Cell>>,
 }
 
 /// Runs the command.
@@ -74,7 +80,8 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     };
     let mut tables: Vec<String> = Vec::new();
     for path in &a.files {
-        let options = CheckOptions { platform: a.platform.clone(), timing: a.timing, ..CheckOptions::default() };
+        let options =
+            CheckOptions { platform: a.platform.clone(), timing: a.timing, ..CheckOptions::default() };
         let mut timings = Vec::new();
         let (findings, sound, graph, missions) = match compile::check_with(path, &options, &mut timings) {
             Ok(c) => (c.findings, true, c.graph, c.missions),
@@ -84,6 +91,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         if !findings.diagnostics.is_empty() {
             output::note(&format!("{path}: {}", findings.count()));
         }
+        let cells = if a.matrix { matrix::cells(path)? } else { Vec::new() };
         let digest = graph.as_ref().filter(|_| a.format == Format::Json).map(crate::graph_file::digest);
         let mission = graph.map(|g| g.name.to_string());
         document.errors += findings.errors();
@@ -98,8 +106,10 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             graph_digest: digest,
             errors,
             warnings,
+            matrix: a.matrix.then(|| cells.clone()),
             timing: a.timing.then(|| timings.iter().map(|(m, t)| JsonTiming::new(m, t)).collect()),
         });
+        tables.extend(a.matrix.then(|| matrix::table(&cells)));
         tables.extend(timings.iter().map(|(m, t)| timing(m, t)));
     }
     let denied = a.deny == Some(Deny::Warnings) && document.warnings > 0;

@@ -12,6 +12,9 @@ use std::path::Path;
 pub struct Arguments {
     #[command(flatten)]
     mission: Mission,
+    /// What is shown
+    #[arg(long, value_enum, default_value_t)]
+    kind: graph_view::Show,
     /// The form [default: by the ending of the file to write, else mermaid]
     #[arg(long, value_enum)]
     format: Option<Form>,
@@ -42,6 +45,15 @@ impl Arguments {
 
     /// Refuses a file whose ending promises something else than what would be in it.
     fn fits(&self) -> Result<(), Refusal> {
+        if self.kind != graph_view::Show::Behaviour && matches!(self.form(), Form::Yaml | Form::Json) {
+            return Err(Refusal::about(
+                "--kind",
+                "S9012",
+                "the file cannot be written",
+                "a graph file holds the whole graph",
+                "ask for a picture: `--format svg`, `dot` or `mermaid`",
+            ));
+        }
         let Some(path) = self.output.as_deref().filter(|_| self.format.is_none()) else { return Ok(()) };
         match Path::new(path).extension().and_then(|e| e.to_str()) {
             None | Some("mmd" | "mermaid" | "md" | "dot" | "gv" | "svg" | "yaml" | "yml" | "json") => Ok(()),
@@ -72,7 +84,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     a.fits()?;
     let compiled = a.mission.compile()?;
     compiled.findings.print();
-    let text = render(&compiled.graph, a.form()).map_err(|e| {
+    let text = render(&compiled.graph, a.form(), a.kind).map_err(|e| {
         Refusal::about(&a.mission.file, "S9999", "the graph cannot be written", e, "please report this")
             .exit(Exit::Internal)
     })?;
@@ -86,11 +98,11 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     Ok(Exit::Success)
 }
 
-fn render(graph: &Graph, form: Form) -> Result<String, String> {
+fn render(graph: &Graph, form: Form, show: graph_view::Show) -> Result<String, String> {
     Ok(match form {
-        Form::Mermaid => graph_view::mermaid(graph),
-        Form::Dot => graph_view::dot(graph),
-        Form::Svg => graph_view::svg(graph),
+        Form::Mermaid => graph_view::mermaid(graph, show),
+        Form::Dot => graph_view::dot(graph, show),
+        Form::Svg => graph_view::svg(graph, show),
         Form::Yaml => graph_file::to_yaml(graph)?,
         Form::Json => graph_file::to_json(graph)?,
     })

@@ -37,6 +37,9 @@ struct Sweep {
     /// Which mission of the file [default: its first]
     #[arg(long, value_name = "NAME")]
     mission: Option<String>,
+    /// Let the faults of this test happen; its mission unless `--mission` names one
+    #[arg(long, value_name = "NAME")]
+    test: Option<String>,
     /// Seeds: `20` for 1 to 20, or a list as `1..20,42`
     #[arg(long, value_name = "SEEDS", default_value = "20")]
     seeds: String,
@@ -125,7 +128,7 @@ fn execute(a: &Sweep) -> Result<(Document, Exit), Refusal> {
             }
         }
     }
-    let plan = Plan { platforms: a.platform.clone(), sets, seeds };
+    let plan = Plan { platforms: a.platform.clone(), test: a.test.clone(), sets, seeds };
     if plan.runs().is_none_or(|n| n > 10_000_000) {
         return Err(wrong("sweep".into(), "more than ten million runs".into()));
     }

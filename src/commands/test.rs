@@ -164,7 +164,8 @@ fn file(path: &str, a: &Arguments, pool: Option<&rayon::ThreadPool>) -> Result<V
     let mut entries = Vec::new();
     let main = checked.graph.as_ref().map(|g| g.name.to_string());
     for case in checked.tests.iter().filter(|t| is_in(t, &checked.findings.sources, path)) {
-        let mission = execute::load(compile::compile_test(path, &case.mission, &case.name)?.graph)?;
+        let mission =
+            execute::load(compile::compile_with(path, None, Some(&case.mission), Some(&case.name))?.graph)?;
         let place = Place { path, at: case.at, sources: &checked.findings.sources };
         entries.push(test(&place, case, &mission, pool)?);
     }

@@ -16,6 +16,11 @@ pub fn draw(view: &View) -> String {
             Kind::Topic => "cds",
             Kind::Arbiter => "diamond",
             Kind::Goal => "doublecircle",
+            Kind::Mission => "house",
+            Kind::Subgoal => "ellipse",
+            Kind::Plan => "note",
+            Kind::Agent => "component",
+            Kind::Service | Kind::Action => "box",
         };
         let _ = writeln!(s, "  {} [shape={shape}, label={}];", t.id, quote(&t.lines.join("\n")));
     }

@@ -15,6 +15,11 @@ pub fn draw(view: &View) -> String {
             Kind::Topic => (">", "]"),
             Kind::Arbiter => ("{", "}"),
             Kind::Goal => ("((", "))"),
+            Kind::Mission => ("{{", "}}"),
+            Kind::Subgoal => ("(", ")"),
+            Kind::Plan => ("[/", "/]"),
+            Kind::Agent => ("[[", "]]"),
+            Kind::Service | Kind::Action => ("[", "]"),
         };
         let _ = writeln!(s, "  {}{open}{label}{close}", t.id);
     }

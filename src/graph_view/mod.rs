@@ -1,5 +1,6 @@
 //! Pictures of a behaviour graph: who reads, decides, tells and commands what.
 
+mod agents;
 mod dot;
 mod layout;
 mod mermaid;
@@ -9,17 +10,34 @@ mod svg;
 
 use soifra_graph::Graph;
 
+/// What is shown of a graph.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum Show {
+    /// Who reads, decides, tells and commands what
+    #[default]
+    Behaviour,
+    /// The ontology: mission, goals, sub-goals, plans, agents, services, actions, and who is allocated
+    Agents,
+}
+
+fn view(graph: &Graph, show: Show) -> model::View {
+    match show {
+        Show::Behaviour => model::View::of(graph),
+        Show::Agents => agents::view(graph),
+    }
+}
+
 /// The graph as a Mermaid flowchart.
-pub fn mermaid(graph: &Graph) -> String {
-    mermaid::draw(&model::View::of(graph))
+pub fn mermaid(graph: &Graph, show: Show) -> String {
+    mermaid::draw(&view(graph, show))
 }
 
 /// The graph in Graphviz's language.
-pub fn dot(graph: &Graph) -> String {
-    dot::draw(&model::View::of(graph))
+pub fn dot(graph: &Graph, show: Show) -> String {
+    dot::draw(&view(graph, show))
 }
 
 /// The graph as a picture, laid out.
-pub fn svg(graph: &Graph) -> String {
-    svg::draw(&model::View::of(graph))
+pub fn svg(graph: &Graph, show: Show) -> String {
+    svg::draw(&view(graph, show))
 }

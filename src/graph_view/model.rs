@@ -18,6 +18,12 @@ pub enum Kind {
     Topic,
     Arbiter,
     Goal,
+    Mission,
+    Subgoal,
+    Plan,
+    Agent,
+    Service,
+    Action,
 }
 
 /// A thing outside of agents.
@@ -87,15 +93,15 @@ impl View {
     }
 }
 
-struct Builder<'g> {
-    graph: &'g Graph,
-    things: BTreeMap<(Kind, String), Thing>,
-    links: Vec<Link>,
+pub(super) struct Builder<'g> {
+    pub graph: &'g Graph,
+    pub things: BTreeMap<(Kind, String), Thing>,
+    pub links: Vec<Link>,
 }
 
 impl Builder<'_> {
     /// The id of a thing, made when it is new.
-    fn thing(&mut self, kind: Kind, name: &str, lines: Vec<String>) -> String {
+    pub fn thing(&mut self, kind: Kind, name: &str, lines: Vec<String>) -> String {
         let n = self.things.len();
         let thing = self.things.entry((kind, name.to_string())).or_insert_with(|| Thing {
             id: format!("t{n}"),
@@ -105,7 +111,7 @@ impl Builder<'_> {
         thing.id.clone()
     }
 
-    fn link(&mut self, from: &str, to: &str, label: &str) {
+    pub fn link(&mut self, from: &str, to: &str, label: &str) {
         self.links.push(Link { from: from.into(), to: to.into(), label: label.into() });
     }
 

@@ -98,7 +98,12 @@ impl Block {
             Kind::Actuator => ("actuator", 2.0),
             Kind::Topic => ("topic", 8.0),
             Kind::Arbiter => ("arbiter", 2.0),
-            Kind::Goal => ("goal", text / 2.0),
+            Kind::Goal | Kind::Mission => ("goal", text / 2.0),
+            Kind::Subgoal => ("sensor", text / 2.0),
+            Kind::Plan => ("topic", 2.0),
+            Kind::Agent => ("agent", 2.0),
+            Kind::Service => ("unit", 2.0),
+            Kind::Action => ("actuator", 2.0),
         };
         let mut s = String::new();
         rect(&mut s, class, 0.0, 0.0, w, h, radius);

@@ -1,6 +1,7 @@
 //! The only fancy rendering: diagnostics with source excerpts, and tables.
 
 mod excerpt;
+pub mod matrix;
 pub mod table;
 pub mod timing;
 

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 pub struct Plan {
     /// Platforms that replace the mission's own; empty: the mission's own.
     pub platforms: Vec<String>,
+    /// Test whose faults happen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub test: Option<String>,
     /// Parameters with the values they are given, in the order given.
     pub sets: Vec<(String, Vec<String>)>,
     /// Seeds, ascending.
@@ -87,6 +90,7 @@ mod tests {
     #[test]
     fn every_combination_in_order() {
         let plan = Plan {
+            test: None,
             platforms: vec!["p".into(), "q".into()],
             sets: vec![("a".into(), values("1,2")), ("b".into(), values("(0 m, 1 m),x"))],
             seeds: vec![1, 2, 3],

@@ -35,7 +35,8 @@ pub fn execute(
     let mut values: Vec<Vec<(usize, Value)>> = Vec::new();
     for case in &cases {
         if !missions.contains_key(&case.platform) {
-            let compiled = compile::compile_mission(file, case.platform.as_deref(), mission)?;
+            let compiled =
+                compile::compile_with(file, case.platform.as_deref(), mission, plan.test.as_deref())?;
             if missions.is_empty() {
                 compiled.findings.print();
             }

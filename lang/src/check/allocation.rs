@@ -4,7 +4,7 @@
 use super::{Constants, walk};
 use crate::code;
 use soifra_graph::{
-    Diagnostic, Govern, Graph, Name, Span, StmtKind, SubGoal, Value,
+    Diagnostic, Govern, Graph, LibraryPlan, Name, Span, StmtKind, SubGoal, Value,
     allocation::{Agent, Matcher, Outcome, Problem, Refusal},
     planning::{Means, Pool, Wanted},
 };
@@ -19,25 +19,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     if g.goals.iter().flat_map(|x| &x.subgoals).all(|s| s.agent.is_some()) {
         return out;
     }
-    let mut known = Constants::new(g);
-    let mut groups: Vec<u32> = Vec::new();
-    let mut names = Vec::new();
-    for (i, r) in (0..).zip(&g.robots) {
-        let Some(count) = known.count(r.count.as_ref()).filter(|c| groups.len() + c <= MOST) else {
-            return out;
-        };
-        groups.extend((0..count).map(|_| i));
-        let name = |k: usize| if r.count.is_some() { format!("{}[{k}]", r.name) } else { r.name.to_string() };
-        names.extend((0..count).map(name));
-    }
-    let holds: Vec<bool> = g
-        .plans
-        .iter()
-        .map(|p| p.when.as_ref().is_none_or(|e| known.value(e, 0) != Some(Value::Bool(false))))
-        .collect();
-    let bodies = groups.iter().filter(|i| g.robots.get(**i as usize).is_some_and(|r| !r.host)).count() as u32;
-    let pool = Pool::new(g, &groups);
-    let hall = Hall { g, pool, names };
+    let Some((hall, holds, bodies)) = Hall::new(g) else { return out };
     let at_start = |p: u32| holds.get(p as usize).copied().unwrap_or(false);
     let goals = |on_request: bool| {
         (0..).zip(&g.goals).filter(move |(_, x)| x.on_request == on_request).map(|(i, _)| i)
@@ -46,7 +28,8 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     for goal in goals(false) {
         let wanted = g.wanted(goal, bodies, &at_start);
         if wanted.is_empty()
-            && let Some(x) = g.goals.get(goal as usize).filter(|x| x.subgoals.iter().any(|s| s.plan.is_some()))
+            && let Some(x) =
+                g.goals.get(goal as usize).filter(|x| x.subgoals.iter().any(|s| s.plan.is_some()))
         {
             out.push(no_plan(g, &x.name, x.at));
         }
@@ -72,6 +55,38 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     out
 }
 
+/// A sub-goal as it is allocated at the start of a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Allotted {
+    /// Goal and sub-goal, by index.
+    pub goal: (u32, u32),
+    /// The robot that it is for, when each has one.
+    pub robot: Option<String>,
+    /// Plan of the library, by index.
+    pub plan: u32,
+    /// Services with the agents that give them, `agent@robot`.
+    pub agents: Vec<(Name, String)>,
+}
+
+/// The allocation at the start of a run with parameters at their defaults: sub-goals that are served.
+pub fn allocation(g: &Graph) -> Vec<Allotted> {
+    let Some((hall, holds, bodies)) = Hall::new(g) else { return Vec::new() };
+    let holds = |p: u32| holds.get(p as usize).copied().unwrap_or(false);
+    let goals = (0..).zip(&g.goals).filter(|(_, x)| !x.on_request).map(|(i, _)| i);
+    let wanted: Vec<Wanted> = goals.flat_map(|goal| g.wanted(goal, bodies, &holds)).collect();
+    let (matcher, means) = hall.solve(&wanted, &holds);
+    let mut out = Vec::new();
+    for ((w, means), outcome) in wanted.iter().zip(&means).zip(matcher.outcomes()) {
+        let Some(choice) = outcome.choice() else { continue };
+        let Some(plan) = means.get(choice.label as usize).map(|m| m.plan) else { continue };
+        let needs = g.plans.get(plan as usize).map(|p| p.needs.as_slice()).unwrap_or_default();
+        let agents = needs.iter().zip(&choice.agents).map(|((s, _), a)| (s.clone(), hall.name(*a)));
+        let robot = w.robot.and_then(|r| hall.names.get(r as usize).cloned());
+        out.push(Allotted { goal: (w.goal, w.subgoal), robot, plan, agents: agents.collect() });
+    }
+    out
+}
+
 /// Offers and words that mean nothing without plans.
 fn idle(g: &Graph) -> Vec<Diagnostic> {
     let mut out = Vec::new();
@@ -81,7 +96,10 @@ fn idle(g: &Graph) -> Vec<Diagnostic> {
             out.push(
                 Diagnostic::warning(code::NO_EFFECT, format!("no plan needs `{}`", o.name))
                     .at(o.span, "runs only while it is needed, so never")
-                    .hint(format!("write a plan: `plan NAME for SUBGOAL {{ needs {} }}`, or do not offer it", o.name)),
+                    .hint(format!(
+                        "write a plan: `plan NAME for SUBGOAL {{ needs {} }}`, or do not offer it",
+                        o.name
+                    )),
             );
         }
         if a.offers.iter().any(|o| o.unit.is_some()) {
@@ -91,10 +109,13 @@ fn idle(g: &Graph) -> Vec<Diagnostic> {
             if let StmtKind::Govern(what @ (Govern::Achieve | Govern::Fail(_))) = &s.kind {
                 let word = if *what == Govern::Achieve { "achieve" } else { "fail" };
                 out.push(
-                    Diagnostic::warning(code::NO_EFFECT, format!("`{word}` is for agents that are allocated"))
-                        .at(s.at, "of which sub-goal?")
-                        .at(a.span, "offers no service that a plan could need")
-                        .hint("offer a service: `offers UNIT`; of a sub-goal `by` an agent say `achieved when`"),
+                    Diagnostic::warning(
+                        code::NO_EFFECT,
+                        format!("`{word}` is for agents that are allocated"),
+                    )
+                    .at(s.at, "of which sub-goal?")
+                    .at(a.span, "offers no service that a plan could need")
+                    .hint("offer a service: `offers UNIT`; of a sub-goal `by` an agent say `achieved when`"),
                 );
             }
         }
@@ -123,7 +144,41 @@ struct Hall<'g> {
     names: Vec<String>,
 }
 
-impl Hall<'_> {
+impl<'g> Hall<'g> {
+    /// Everybody, which plans hold at the start, and the number of robots with a body; none when the number of
+    /// robots is not known, or too large.
+    fn new(g: &'g Graph) -> Option<(Hall<'g>, Vec<bool>, u32)> {
+        let mut known = Constants::new(g);
+        let (mut groups, mut names) = (Vec::new(), Vec::new());
+        for (i, r) in (0..).zip(&g.robots) {
+            let count = known.count(r.count.as_ref()).filter(|c| groups.len() + c <= MOST)?;
+            groups.extend((0..count).map(|_| i));
+            let name =
+                |k: usize| if r.count.is_some() { format!("{}[{k}]", r.name) } else { r.name.to_string() };
+            names.extend((0..count).map(name));
+        }
+        let holds =
+            |p: &LibraryPlan| p.when.as_ref().is_none_or(|e| known.value(e, 0) != Some(Value::Bool(false)));
+        let holds: Vec<bool> = g.plans.iter().map(holds).collect();
+        let has_body = |i: &&u32| g.robots.get(**i as usize).is_some_and(|r| !r.host);
+        let bodies = groups.iter().filter(has_body).count() as u32;
+        Some((Hall { g, pool: Pool::new(g, &groups), names }, holds, bodies))
+    }
+
+    /// The allocation of what is wanted.
+    fn solve(&self, wanted: &[Wanted], holds: &dyn Fn(u32) -> bool) -> (Matcher, Vec<Vec<Means>>) {
+        let agents = self.pool.members().iter().map(|m| {
+            let a = &self.g.agents[m.agent as usize];
+            // An exclusive agent that a sub-goal names serves that one.
+            Agent { collaborative: a.collaborative, available: a.collaborative || !self.g.is_bound(m.agent) }
+        });
+        let (tasks, means): (Vec<_>, Vec<_>) =
+            wanted.iter().map(|w| self.pool.task(self.g, *w, holds)).unzip();
+        let mut matcher = Matcher::new(Problem { agents: agents.collect(), tasks });
+        matcher.solve();
+        (matcher, means)
+    }
+
     fn subgoal(&self, w: &Wanted) -> &SubGoal {
         &self.g.goals[w.goal as usize].subgoals[w.subgoal as usize]
     }
@@ -137,15 +192,7 @@ impl Hall<'_> {
 
     /// What cannot be served, and why.
     fn refusals(&self, wanted: &[Wanted], holds: &dyn Fn(u32) -> bool) -> Vec<Diagnostic> {
-        let agents = self.pool.members().iter().map(|m| {
-            let a = &self.g.agents[m.agent as usize];
-            // An exclusive agent that a sub-goal names serves that one.
-            Agent { collaborative: a.collaborative, available: a.collaborative || !self.g.is_bound(m.agent) }
-        });
-        let (tasks, means): (Vec<_>, Vec<_>) =
-            wanted.iter().map(|w| self.pool.task(self.g, *w, holds)).unzip();
-        let mut matcher = Matcher::new(Problem { agents: agents.collect(), tasks });
-        matcher.solve();
+        let (matcher, means) = self.solve(wanted, holds);
         let mut out = Vec::new();
         for ((w, means), outcome) in wanted.iter().zip(&means).zip(matcher.outcomes()) {
             match outcome {
@@ -161,9 +208,12 @@ impl Hall<'_> {
                 Outcome::Undecided => {
                     let s = self.subgoal(w);
                     out.push(
-                        Diagnostic::warning(code::NOT_AVAILABLE, format!("not proven that agents for `{}` are available", s.name))
-                            .at(s.at, "too many ways to share the agents")
-                            .hint("fewer exclusive agents in plans with several needs make it easier to decide"),
+                        Diagnostic::warning(
+                            code::NOT_AVAILABLE,
+                            format!("not proven that agents for `{}` are available", s.name),
+                        )
+                        .at(s.at, "too many ways to share the agents")
+                        .hint("fewer exclusive agents in plans with several needs make it easier to decide"),
                     );
                 }
                 Outcome::Served(_) | Outcome::Removed => {}
@@ -191,14 +241,17 @@ impl Hall<'_> {
                 *at,
                 match elsewhere {
                     None => format!("nobody offers `{service}`"),
-                    Some(a) => format!("on the robot of the others nobody offers `{service}`, only {}", self.name(a)),
+                    Some(a) => {
+                        format!("on the robot of the others nobody offers `{service}`, only {}", self.name(a))
+                    }
                 },
             );
             for (r, u) in self.g.robots.iter().flat_map(|r| r.unfit.iter().map(move |u| (r, u))) {
                 let a = &self.g.agents[u.agent as usize];
                 if a.offers.iter().any(|o| o.name == *service) {
                     let platform = self.g.platforms.get(r.platform as usize).map_or("?", |p| &*p.name);
-                    let text = format!("`{}` would, but `{platform}` has no such {} `{}`", a.name, u.role, u.port);
+                    let text =
+                        format!("`{}` would, but `{platform}` has no such {} `{}`", a.name, u.role, u.port);
                     d = d.at(u.at, text);
                     unfit = true;
                 }

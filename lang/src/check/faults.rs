@@ -33,7 +33,10 @@ fn fault(g: &Graph, f: &Component) -> Option<Diagnostic> {
             let (text, e) = text(f, "sensor")?;
             let (robot, sensor) = text.split_once('.').unwrap_or((text, ""));
             let Some(group) = g.bodies().find(|r| is_of(r, robot)) else {
-                return Some(unknown(code::FAULT, "robot", robot, e.span, g.bodies().map(|r| &*r.name)).hint("write `ROBOT.SENSOR`"));
+                return Some(
+                    unknown(code::FAULT, "robot", robot, e.span, g.bodies().map(|r| &*r.name))
+                        .hint("write `ROBOT.SENSOR`"),
+                );
             };
             let platform = g.platforms.get(group.platform as usize)?;
             let known: Vec<&str> = platform.of_role("sensor").map(|c| &*c.name).collect();
@@ -44,7 +47,8 @@ fn fault(g: &Graph, f: &Component) -> Option<Diagnostic> {
             let (text, e) = text(f, "of")?;
             let topics = g.topics.iter().map(|t| &*t.channel.name);
             let known: Vec<&str> = topics.chain(g.conversations.iter().map(|c| &*c.name)).collect();
-            (!known.contains(&text)).then(|| unknown(code::FAULT, "topic or conversation", text, e.span, known))
+            (!known.contains(&text))
+                .then(|| unknown(code::FAULT, "topic or conversation", text, e.span, known))
         }
         // Whoever asks for a goal that is not there is refused; that is what it is for.
         _ => None,

@@ -29,6 +29,7 @@ mod topics;
 mod types;
 pub mod walk;
 
+pub use allocation::{Allotted, allocation};
 pub(crate) use capability::fits;
 pub(crate) use constants::{Constants, not_computable};
 pub(crate) use ranges::wrong_period;

@@ -4,8 +4,8 @@
 use super::walk;
 use crate::code;
 use soifra_graph::{
-    Agent, Diagnostic, Dim, ExpectKind, Expr, Frame, Govern, Graph, ListOp, Op, Own, Quantifier, Run, Span, Stmt,
-    StmtKind, Strategy, Trigger, Truth, Type, UnitKind, Value, pattern::Bindings, typing,
+    Agent, Diagnostic, Dim, ExpectKind, Expr, Frame, Govern, Graph, ListOp, Op, Own, Quantifier, Run, Span,
+    Stmt, StmtKind, Strategy, Trigger, Truth, Type, UnitKind, Value, pattern::Bindings, typing,
 };
 
 /// Checks everything the other checks take for granted.

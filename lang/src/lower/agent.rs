@@ -82,7 +82,8 @@ impl<'a> Checker<'a> {
             let unit = self.agent.units.iter().position(|u| *u == n.name && !spoken).map(|u| u as u32);
             if unit.is_none() && !spoken {
                 let units = self.agent.units.iter().cloned();
-                let known: Vec<Name> = units.chain(self.conversations.iter().map(|c| c.name.clone())).collect();
+                let known: Vec<Name> =
+                    units.chain(self.conversations.iter().map(|c| c.name.clone())).collect();
                 let what = "service, machine, plan or conversation";
                 let d = unknown(code::UNKNOWN_NAME, what, &n.name, n.span, known.iter().map(|k| &**k));
                 self.report(d);

@@ -47,12 +47,7 @@ impl<'a> Checker<'a> {
                     at: s.name.span,
                 }));
             }
-            out.push(Goal {
-                name: g.name.name.clone(),
-                on_request: g.on_request,
-                subgoals,
-                at: g.name.span,
-            });
+            out.push(Goal { name: g.name.name.clone(), on_request: g.on_request, subgoals, at: g.name.span });
         }
         let plans = library.into_iter().filter_map(|p| self.library_plan(p)).collect();
         (out, plans)
@@ -62,7 +57,8 @@ impl<'a> Checker<'a> {
     fn library(&mut self, goals: &[&'a ast::Goal]) -> Vec<&'a ast::LibraryPlan> {
         let plans = self.decls.plans.clone();
         let of_goals = |name: &Name| goals.iter().any(|g| g.name.name == *name);
-        let mut wanted: BTreeSet<&Name> = goals.iter().flat_map(|g| &g.subgoals).map(|s| &s.name.name).collect();
+        let mut wanted: BTreeSet<&Name> =
+            goals.iter().flat_map(|g| &g.subgoals).map(|s| &s.name.name).collect();
         for (_, p) in &plans {
             if of_goals(&p.target.name) {
                 wanted.extend(p.subgoals.iter().map(|s| &s.name.name));
@@ -178,7 +174,8 @@ impl<'a> Checker<'a> {
                 d.title = format!("no agent offers `{}`", n.name);
                 d.labels[0].text = format!("`{}` needs it", p.name.name);
                 if known.is_empty() {
-                    d.hint = Some(format!("write `offers {}` in an agent with a service of that name", n.name));
+                    d.hint =
+                        Some(format!("write `offers {}` in an agent with a service of that name", n.name));
                 }
                 self.report(d);
             }

@@ -69,7 +69,11 @@ impl Cargo {
     }
 
     /// Names and poses: a parcel that is held is where its robot is.
-    pub fn poses<'c>(&'c self, bodies: &'c [Body], now: i64) -> impl Iterator<Item = (String, [f64; 7])> + 'c {
+    pub fn poses<'c>(
+        &'c self,
+        bodies: &'c [Body],
+        now: i64,
+    ) -> impl Iterator<Item = (String, [f64; 7])> + 'c {
         self.parcels.iter().map(move |p| {
             let body = p.holder.and_then(|r| bodies.get(r as usize));
             let [x, y] = body.map_or(p.at, |b| b.place(now).at);

@@ -100,7 +100,14 @@ pub fn scene(parts: Vec<Part>, world: Vec<Part>, starts: &[[f64; 3]]) -> Scene {
             consumed: vec![true; sensors],
         })
         .collect();
-    Scene { seed: 7, step: Some(Time(1_000_000_000)), world, platforms: vec![platform(parts)], robots, faults: Vec::new() }
+    Scene {
+        seed: 7,
+        step: Some(Time(1_000_000_000)),
+        world,
+        platforms: vec![platform(parts)],
+        robots,
+        faults: Vec::new(),
+    }
 }
 
 pub fn secs(s: f64) -> Time {

@@ -262,7 +262,11 @@ impl Engine<'_> {
     pub(super) fn put_letter(&mut self, unit: u32, letter: Arc<Letter>, record: Option<u64>) {
         if !self.lives.is_on(unit) {
             let dead = self.lives.is_dead(self.cast.units[unit as usize].instance);
-            self.trace_delivery(unit, &letter, Some(if dead { "the agent is dead" } else { "it does not run" }));
+            self.trace_delivery(
+                unit,
+                &letter,
+                Some(if dead { "the agent is dead" } else { "it does not run" }),
+            );
             return;
         }
         if let Some(oldest) = self.mail.put(unit, Delivered { letter, record }) {
@@ -476,7 +480,8 @@ impl Engine<'_> {
 
     /// These parameters have been set: who subscribes to them hears of it, and other plans may hold.
     pub(super) fn params_set(&mut self, params: &[u32], cause: Option<u64>) {
-        let mut heard: Vec<u32> = params.iter().filter_map(|p| self.on_param.get(p)).flatten().copied().collect();
+        let mut heard: Vec<u32> =
+            params.iter().filter_map(|p| self.on_param.get(p)).flatten().copied().collect();
         heard.sort_unstable();
         heard.dedup();
         for unit in heard {
@@ -568,12 +573,7 @@ impl Engine<'_> {
         for (goal, status) in self.goals.changes() {
             let name = self.mission.graph.goals[goal].name.to_string();
             let status = status.to_string();
-            self.recorder.record(now, None, || Event::Goal {
-                goal: name,
-                robot: None,
-                status,
-                reason: None,
-            });
+            self.recorder.record(now, None, || Event::Goal { goal: name, robot: None, status, reason: None });
         }
         self.judge_expectations(now, Occasion::Instant);
         let mut frame = std::mem::take(&mut self.judge.frame);

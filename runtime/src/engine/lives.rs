@@ -63,8 +63,11 @@ impl Engine<'_> {
             return;
         };
         let (name, told) = (agent.clone(), text.clone());
-        let record =
-            self.recorder.record(self.now, cause, || Event::Fault { robot: Some(robot), agent: name, text: told });
+        let record = self.recorder.record(self.now, cause, || Event::Fault {
+            robot: Some(robot),
+            agent: name,
+            text: told,
+        });
         self.faults.push(format!("{agent}: {text}"));
         let since = self.now;
         let failures = self.lives.failures.entry(instance).or_default();
@@ -135,7 +138,8 @@ impl Engine<'_> {
         for (i, s) in mission.agents[who.agent as usize].subgoals.iter().enumerate() {
             self.believe(who.subgoals + i, s.goal, who.robot, &s.name, ACTIVE, record);
         }
-        let conversations = mission.graph.agents[who.agent as usize].offers.iter().filter(|o| o.unit.is_none());
+        let conversations =
+            mission.graph.agents[who.agent as usize].offers.iter().filter(|o| o.unit.is_none());
         conversations.for_each(|o| self.directory.register(&o.name, instance));
         self.ask_to_register(instance, record);
     }

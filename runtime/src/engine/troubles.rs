@@ -202,7 +202,13 @@ impl Engine<'_> {
     }
 
     /// A reading as the faults of its sensor leave it; none when they take it away.
-    pub(super) fn troubled(&mut self, robot: u32, sensor: u32, registers: &[f64], record: Option<u64>) -> Option<Vec<f64>> {
+    pub(super) fn troubled(
+        &mut self,
+        robot: u32,
+        sensor: u32,
+        registers: &[f64],
+        record: Option<u64>,
+    ) -> Option<Vec<f64>> {
         let here = |t: &&SensorTrouble| (t.robot, t.sensor) == (robot, sensor);
         let (now, seed) = (self.now, self.seed);
         let struck: Vec<Option<f64>> = self

@@ -307,7 +307,9 @@ fn trigger(
         Trigger::Reading(p) if (*p as usize) < agent.sensors.len() => (TriggerCode::Reading(*p), None),
         Trigger::Event(e) if (*e as usize) < agent.events.len() => (TriggerCode::Event(*e), None),
         Trigger::Param(p) if (*p as usize) < graph.params.len() => (TriggerCode::Param(*p), None),
-        Trigger::Reading(_) | Trigger::Event(_) | Trigger::Param(_) => return damaged(unit.span, "a trigger does not exist"),
+        Trigger::Reading(_) | Trigger::Event(_) | Trigger::Param(_) => {
+            return damaged(unit.span, "a trigger does not exist");
+        }
     })
 }
 

@@ -138,13 +138,9 @@ fn who_dies_is_replaced_while_anybody_is_capable() {
     let all = one + &kill("watcher@south", 45) + &kill("listener@east", 65);
     let ran = guarded("", "", &all);
     ran.check_records();
-    let running =
-        ["0 +watcher@north.watch", "25 +watcher@south.watch", "45 +listener@east.listen"];
+    let running = ["0 +watcher@north.watch", "25 +watcher@south.watch", "45 +listener@east.listen"];
     assert_eq!(services(&ran), running);
-    assert_eq!(
-        standing(&ran).last().map(String::as_str),
-        Some("65 safety failed")
-    );
+    assert_eq!(standing(&ran).last().map(String::as_str), Some("65 safety failed"));
     let why = "65 look failed: no agent: watcher@north, watcher@south, listener@east dead";
     assert!(standing(&ran).contains(&why.to_string()), "{:?}", standing(&ran));
 }
@@ -219,7 +215,10 @@ fn a_restart_forgets_what_was_known() {
     let ran = failing("restart 5 within 1 s", "");
     let alive: Vec<_> = notes(&ran).into_iter().filter(|n| n.contains("alive")).collect();
     // The first activation after the fault sees the initial state.
-    assert_eq!(alive[..6], ["0 alive: 0", "10 alive: 1", "20 alive: 2", "40 alive: 1", "50 alive: 2", "70 alive: 1"]);
+    assert_eq!(
+        alive[..6],
+        ["0 alive: 0", "10 alive: 1", "20 alive: 2", "40 alive: 1", "50 alive: 2", "70 alive: 1"]
+    );
 }
 
 #[test]
@@ -303,7 +302,11 @@ fn the_three_refusals_at_run_time() {
     // No agent: whoever could do it is dead.
     let faults = "fault = kill(agent: \"speaker\", at: 20 ms) fault = post(goal: \"news\", at: 50 ms)";
     let ran = guarded("", "", faults);
-    assert!(said(&ran).contains(&"refuse planner operator achieve news: no agent: speaker@east dead".to_string()), "{:#?}", said(&ran));
+    assert!(
+        said(&ran).contains(&"refuse planner operator achieve news: no agent: speaker@east dead".to_string()),
+        "{:#?}",
+        said(&ran)
+    );
     // Not available: after a death, two sub-goals want the one who is left.
     let ran = run(r#"
 edition 1
@@ -322,10 +325,7 @@ mission m {
 "#);
     ran.check_records();
     let failed: Vec<_> = standing(&ran).into_iter().filter(|s| s.contains("smell failed")).collect();
-    assert_eq!(
-        failed,
-        ["50 smell failed: capable agents are not available: watcher@north serves look"]
-    );
+    assert_eq!(failed, ["50 smell failed: capable agents are not available: watcher@north serves look"]);
 }
 
 #[test]
@@ -353,11 +353,18 @@ mission m {
 "#);
     ran.check_records();
     assert_eq!(ran.report.outcome.name(), "success");
-    let told: Vec<_> = said(&ran).into_iter().filter(|s| s.starts_with("failure") || s.starts_with("inform w")).collect();
+    let told: Vec<_> =
+        said(&ran).into_iter().filter(|s| s.starts_with("failure") || s.starts_with("inform w")).collect();
     assert_eq!(told[0], "failure worker@clumsy planner one: too hard");
-    assert_eq!(told[1..], ["inform worker@able planner two: achieved", "inform worker@handy planner one: achieved"]);
+    assert_eq!(
+        told[1..],
+        ["inform worker@able planner two: achieved", "inform worker@handy planner one: achieved"]
+    );
     let ends = standing(&ran);
-    assert!(ends.contains(&"30 two achieved".into()) && ends.last().unwrap().ends_with("all achieved"), "{ends:?}");
+    assert!(
+        ends.contains(&"30 two achieved".into()) && ends.last().unwrap().ends_with("all achieved"),
+        "{ends:?}"
+    );
 }
 
 #[test]
@@ -411,10 +418,19 @@ mission m {{
         )
     };
     let ran = run(&text("collaborative"));
-    let agreed = said(&ran).into_iter().filter(|s| s.contains("achieve b") && s.contains("planner operator")).collect::<Vec<_>>();
-    assert_eq!(agreed, ["agree planner operator achieve b", "refuse planner operator achieve b: it is pursued"]);
+    let agreed = said(&ran)
+        .into_iter()
+        .filter(|s| s.contains("achieve b") && s.contains("planner operator"))
+        .collect::<Vec<_>>();
+    assert_eq!(
+        agreed,
+        ["agree planner operator achieve b", "refuse planner operator achieve b: it is pursued"]
+    );
     let ran = run(&text("exclusive"));
-    let agreed = said(&ran).into_iter().filter(|s| s.contains("achieve b") && s.contains("planner operator")).collect::<Vec<_>>();
+    let agreed = said(&ran)
+        .into_iter()
+        .filter(|s| s.contains("achieve b") && s.contains("planner operator"))
+        .collect::<Vec<_>>();
     let busy = "refuse planner operator achieve b: capable agents are not available: worker@h serves one";
     assert_eq!(agreed, [busy, "agree planner operator achieve b"]);
 }

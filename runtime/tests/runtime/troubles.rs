@@ -78,7 +78,10 @@ fn notes(fault: &str, about: &str) -> Vec<String> {
 
 #[test]
 fn nothing_goes_wrong_by_itself() {
-    assert_eq!(notes("", "answer"), ["2 answer: 1", "22 answer: 2", "42 answer: 3", "62 answer: 4", "82 answer: 5"]);
+    assert_eq!(
+        notes("", "answer"),
+        ["2 answer: 1", "22 answer: 2", "42 answer: 3", "62 answer: 4", "82 answer: 5"]
+    );
     assert_eq!(notes("", "beat").len(), 9);
 }
 
@@ -94,7 +97,10 @@ fn messages_are_lost_for_a_while() {
 
 #[test]
 fn messages_are_late() {
-    assert_eq!(notes("fault = delay(of: \"beat\", by: 5 ms, until: 15 ms)", "beat")[..3], ["6 beat: 1", "16 beat: 2", "21 beat: 3"]);
+    assert_eq!(
+        notes("fault = delay(of: \"beat\", by: 5 ms, until: 15 ms)", "beat")[..3],
+        ["6 beat: 1", "16 beat: 2", "21 beat: 3"]
+    );
     let fault = "fault = delay(of: \"ask\", by: 10 ms, from: 30 ms, until: 50 ms)";
     // The question comes late, so that the clerk has given up.
     assert!(notes(fault, "late").contains(&"48 late".to_string()));
@@ -105,7 +111,10 @@ fn messages_come_twice() {
     // A conversation knows a message that it has had; a topic does not.
     assert_eq!(notes("fault = duplicate(of: \"ask\")", "answer").len(), 5);
     assert_eq!(notes("fault = duplicate(of: \"ask\")", "not understood").len(), 0);
-    assert_eq!(notes("fault = duplicate(of: \"beat\", until: 15 ms)", "beat")[..4], ["1 beat: 1", "1 beat: 1", "11 beat: 2", "11 beat: 2"]);
+    assert_eq!(
+        notes("fault = duplicate(of: \"beat\", until: 15 ms)", "beat")[..4],
+        ["1 beat: 1", "1 beat: 1", "11 beat: 2", "11 beat: 2"]
+    );
 }
 
 #[test]

@@ -204,6 +204,7 @@ impl Env for World {
 
     fn effect(&mut self, effect: Effect<'_>) -> Result<(), FaultKind> {
         self.note(match effect {
+            Effect::Govern(what) => Done::Note(format!("{what:?}"), None),
             Effect::Tell { performative, to, content, registers } => {
                 Done::Tell(performative.into(), to.into(), content.to_string(), registers.to_vec())
             }
@@ -286,6 +287,7 @@ fn port(name: &str, ty: Type, optional: bool) -> Port {
 pub fn graph() -> Graph {
     let state = |name: &str, ty: Type| State { name: name.into(), ty, initial: number(0.0), span: at(0) };
     let agent = Agent {
+        restart: None,
         name: "walker".into(),
         collaborative: false,
         parameters: vec![("rank".into(), Type::Int)],
@@ -309,6 +311,7 @@ pub fn graph() -> Graph {
         span: at(0),
     };
     let group = |name: &str| RobotGroup {
+        unfit: vec![],
         name: name.into(),
         count: None,
         platform: 0,
@@ -321,6 +324,8 @@ pub fn graph() -> Graph {
         at: at(0),
     };
     Graph {
+        plans: vec![],
+        faults: vec![],
         schema: SCHEMA,
         edition: 1,
         name: "test".into(),
@@ -345,7 +350,7 @@ pub fn graph() -> Graph {
         agents: vec![agent],
         robots: vec![group("r1"), group("r2")],
         step: None,
-        goals: vec![Goal { name: "arrive".into(), subgoals: vec![], at: at(0) }],
+        goals: vec![Goal { name: "arrive".into(), on_request: false, subgoals: vec![], at: at(0) }],
         done: boolean(true),
         within: None,
         expects: vec![],

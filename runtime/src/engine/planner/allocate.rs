@@ -175,7 +175,8 @@ impl Engine<'_> {
         let matcher = self.planner.matcher.as_ref()?;
         let t = self.planner.tasks.get(number as usize)?;
         let graph = &self.mission.graph;
-        let names = |agents: &[u32]| agents.iter().map(|a| self.agent_name(*a)).collect::<Vec<_>>().join(", ");
+        let names =
+            |agents: &[u32]| agents.iter().map(|a| self.agent_name(*a)).collect::<Vec<_>>().join(", ");
         match matcher.outcome(number) {
             Outcome::Refused(Refusal::NoPlan) => Some("no plan".into()),
             Outcome::Refused(Refusal::NoCapable { needs }) => {
@@ -184,7 +185,9 @@ impl Engine<'_> {
                     Some(plan.needs.get(*n as usize)?.0.clone())
                 });
                 Some(match lacks {
-                    Some(service) => format!("no capable agent: nobody offers {service}, or all have refused"),
+                    Some(service) => {
+                        format!("no capable agent: nobody offers {service}, or all have refused")
+                    }
                     None => "no capable agent".into(),
                 })
             }
@@ -195,13 +198,16 @@ impl Engine<'_> {
                     .filter_map(|n| self.planner.tasks.get(*n as usize))
                     .map(|t| self.subgoal_name(t.wanted))
                     .collect();
-                let dead: Vec<u32> =
-                    unavailable.iter().copied().filter(|a| self.lives.is_dead(*a)).collect();
+                let dead: Vec<u32> = unavailable.iter().copied().filter(|a| self.lives.is_dead(*a)).collect();
                 Some(match (rivals.is_empty(), dead.is_empty()) {
                     (true, false) => format!("no agent: {} dead", names(&dead)),
                     (true, true) => format!("capable agents are not available: {}", names(unavailable)),
                     (false, _) => {
-                        format!("capable agents are not available: {} serves {}", names(agents), rivals.join(", "))
+                        format!(
+                            "capable agents are not available: {} serves {}",
+                            names(agents),
+                            rivals.join(", ")
+                        )
                     }
                 })
             }

@@ -67,15 +67,30 @@ impl Engine<'_> {
             Notice::Deregister { instance, record } => {
                 self.directory.deregister(instance);
                 let content = self.agent_name(instance);
-                let record =
-                    self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &content, Some("gone".into()), "subscribe", record);
+                let record = self.trace_planner(
+                    DIRECTORY,
+                    "inform_ref",
+                    PLANNER,
+                    &content,
+                    Some("gone".into()),
+                    "subscribe",
+                    record,
+                );
                 self.notify(Notice::Gone { instance, record });
             }
             Notice::Query { service, record } => {
                 let found: Vec<String> =
                     self.directory.search(&service).map(|i| self.agent_name(i)).collect();
                 let who = if found.is_empty() { "nobody".into() } else { found.join(", ") };
-                let record = self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &service, Some(who), "query", record);
+                let record = self.trace_planner(
+                    DIRECTORY,
+                    "inform_ref",
+                    PLANNER,
+                    &service,
+                    Some(who),
+                    "query",
+                    record,
+                );
                 self.notify(Notice::Found { record });
             }
             Notice::Found { record } => {
@@ -159,7 +174,15 @@ impl Engine<'_> {
         // The planner wants to know of those who come later.
         if self.planner.matcher.is_some() {
             let content = self.agent_name(instance);
-            let record = self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &content, Some(names.join(", ")), "subscribe", record);
+            let record = self.trace_planner(
+                DIRECTORY,
+                "inform_ref",
+                PLANNER,
+                &content,
+                Some(names.join(", ")),
+                "subscribe",
+                record,
+            );
             self.notify(Notice::Appeared { instance, record });
         }
     }
@@ -174,7 +197,8 @@ impl Engine<'_> {
         };
         let agreed = refusal.is_none();
         let performative = if agreed { "agree" } else { "refuse" };
-        let record = self.trace_planner(instance, performative, PLANNER, &subgoal, refusal, "request", record);
+        let record =
+            self.trace_planner(instance, performative, PLANNER, &subgoal, refusal, "request", record);
         self.notify(Notice::Answer { instance, task, ticket, agreed, record });
         if agreed {
             for offer in offers {
@@ -193,7 +217,9 @@ impl Engine<'_> {
         let who = self.cast.instances[instance as usize];
         let code = &mission.agents[who.agent as usize];
         for offer in offers {
-            let Some(block) = code.offers.get(*offer as usize).and_then(|o| o.when.as_ref()) else { continue };
+            let Some(block) = code.offers.get(*offer as usize).and_then(|o| o.when.as_ref()) else {
+                continue;
+            };
             let mut frame = std::mem::take(&mut self.desk.frame);
             frame.resize(frame.len().max(block.frame as usize), 0.0);
             let (from, to) = (who.states, who.states + code.states.len());
@@ -230,7 +256,14 @@ impl Engine<'_> {
     }
 
     /// The unit of an offer runs from now on, or no more.
-    fn switch_offer(&mut self, instance: u32, offer: u32, on: bool, subgoal: Option<&str>, cause: Option<u64>) {
+    fn switch_offer(
+        &mut self,
+        instance: u32,
+        offer: u32,
+        on: bool,
+        subgoal: Option<&str>,
+        cause: Option<u64>,
+    ) {
         let who = self.cast.instances[instance as usize];
         let offer = self.mission.graph.agents[who.agent as usize].offers.get(offer as usize);
         if let Some(unit) = offer.and_then(|o| o.unit) {
@@ -283,21 +316,31 @@ impl Engine<'_> {
                 tasks.sort_unstable();
                 tasks.dedup();
                 for task in tasks {
-                    let Some(wanted) = self.planner.tasks.get(task as usize).map(|t| t.wanted) else { continue };
+                    let Some(wanted) = self.planner.tasks.get(task as usize).map(|t| t.wanted) else {
+                        continue;
+                    };
                     let subgoal = self.subgoal_name(wanted);
                     let (achieved, performative, reason) = match what {
                         Govern::Fail(why) => (false, "failure", Some(why.clone())),
                         _ => (true, "inform", Some("achieved".to_string())),
                     };
-                    let record =
-                        self.trace_planner(info.instance, performative, PLANNER, &subgoal, reason, "request", cause);
+                    let record = self.trace_planner(
+                        info.instance,
+                        performative,
+                        PLANNER,
+                        &subgoal,
+                        reason,
+                        "request",
+                        cause,
+                    );
                     self.notify(Notice::Done { instance: info.instance, task, achieved, record });
                 }
             }
             Govern::Pursue(goal) => {
                 let name = self.mission.graph.goals[*goal as usize].name.to_string();
                 let content = format!("achieve {name}");
-                let record = self.trace_planner(info.instance, "request", PLANNER, &content, None, "request", cause);
+                let record =
+                    self.trace_planner(info.instance, "request", PLANNER, &content, None, "request", cause);
                 self.notify(Notice::Post { goal: Some(*goal), name, from: Some(info.instance), record });
             }
         }
@@ -319,7 +362,8 @@ impl Engine<'_> {
             Some(_) if pursued => refusal = Some("it is pursued".to_string()),
             Some(goal) => {
                 self.planner.pursued[goal as usize] = true;
-                let old: Vec<u32> = self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(n, _)| n).collect();
+                let old: Vec<u32> =
+                    self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(n, _)| n).collect();
                 old.into_iter().for_each(|n| self.give_up(n, record));
                 let wanted: Vec<Wanted> = self.all_wanted().into_iter().filter(|w| w.goal == goal).collect();
                 if wanted.is_empty() {
@@ -342,8 +386,12 @@ impl Engine<'_> {
         let performative = if refusal.is_some() { "refuse" } else { "agree" };
         let content = format!("achieve {name}");
         match from {
-            Some(agent) => self.trace_planner(PLANNER, performative, agent, &content, refusal, "request", record),
-            None => self.trace_planner(PLANNER, performative, "operator", &content, refusal, "request", record),
+            Some(agent) => {
+                self.trace_planner(PLANNER, performative, agent, &content, refusal, "request", record)
+            }
+            None => {
+                self.trace_planner(PLANNER, performative, "operator", &content, refusal, "request", record)
+            }
         };
     }
 }

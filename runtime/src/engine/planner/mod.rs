@@ -112,7 +112,8 @@ impl Engine<'_> {
             self.ask_to_register(instance, None);
         }
         let mission = self.mission;
-        let mut services: Vec<_> = mission.graph.plans.iter().flat_map(|p| &p.needs).map(|(n, _)| n).collect();
+        let mut services: Vec<_> =
+            mission.graph.plans.iter().flat_map(|p| &p.needs).map(|(n, _)| n).collect();
         services.sort_unstable();
         services.dedup();
         self.planner.unanswered = services.len() as u32;
