@@ -184,3 +184,27 @@ fn what_is_possible_is_delivered_when_a_courier_dies() {
 fn what_is_possible_is_delivered_when_the_announcer_dies() {
     all("the_announcer_dies");
 }
+
+#[test]
+#[ignore = "a look at one run"]
+fn look() {
+    let (records, _) = run("the_announcer_dies", 77);
+    for r in &records {
+        match &r.event {
+            Event::Note { agent, text, .. } => println!("{:.3} {agent} {text}", r.t.seconds()),
+            Event::Life { agent, status, .. } => println!("{:.3} {agent} {status}", r.t.seconds()),
+            Event::Acl { performative, sender, receiver, registers, thread, .. } if performative != "query_ref" => println!(
+                "{:.3} {performative} {sender} {receiver} {registers:?} {:?}",
+                r.t.seconds(),
+                thread.conversation_id
+            ),
+            Event::Delivery { agent, dropped: Some(why), topic, .. } if topic != "whereabouts" => {
+                println!("{:.3} DROPPED {agent} {topic} {why}", r.t.seconds())
+            }
+            Event::Reading { robot, sensor: 2, registers, .. } if registers[0] == 0.0 && r.t.0 % 1_000_000_000 == 0 => {
+                println!("{:.3} r{robot} holds {}", r.t.seconds(), registers[1])
+            }
+            _ => {}
+        }
+    }
+}

@@ -103,5 +103,8 @@ fn every_field_of_a_check_is_told() {
     let mission = root().join("missions/agents/overload.soi").to_string_lossy().into_owned();
     let o = soifra(&["check", "--timing", &mission, "--format", "json"]);
     seen.extend(found(&json(&o), &[], &[]));
+    let mission = root().join("missions/agents/allocation.soi").to_string_lossy().into_owned();
+    let o = soifra(&["check", "--matrix", &mission, "--format", "json"]);
+    seen.extend(found(&json(&o), &[], &[]));
     assert_eq!(seen, told("check"));
 }

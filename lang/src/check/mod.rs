@@ -24,6 +24,7 @@ mod quantifiers;
 mod ranges;
 mod reachability;
 mod schedulability;
+mod shares;
 mod timing;
 mod topics;
 mod types;
@@ -45,14 +46,21 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     }
     out.extend(form::check(graph));
     out.extend(knowledge::check(graph));
-    out.extend(goals::check(graph));
+    let allocation = allocation::check(graph);
+    // Where agents are missing for want of their ports, what is said of them or commanded by them alone is no
+    // mistake of its own.
+    let maimed = allocation.iter().any(|d| d.code == crate::code::NO_CAPABLE)
+        && graph.robots.iter().any(|r| !r.unfit.is_empty());
+    out.extend(allocation);
+    out.extend(goals::check(graph).into_iter().filter(|d| !maimed || d.code != crate::code::NO_AGENT));
     out.extend(capability::check(graph));
-    out.extend(allocation::check(graph));
     out.extend(faults::check(graph));
     out.extend(hosts::check(graph));
     out.extend(quantifiers::check(graph));
     out.extend(clock::check(graph));
-    out.extend(arbitration::check(graph));
+    if !maimed {
+        out.extend(arbitration::check(graph));
+    }
     out.extend(reachability::check(graph));
     out.extend(topics::check(graph));
     out.extend(conversations::check(graph));
@@ -60,6 +68,7 @@ pub fn verify(graph: &Graph) -> Vec<Diagnostic> {
     out.extend(timing::check(graph));
     out.extend(anytime::check(graph));
     out.extend(schedulability::check(graph));
+    out.extend(shares::check(graph));
     out.extend(effects::check(graph));
     out.extend(lists::check(graph));
     out.extend(computable::check(graph));
@@ -80,11 +89,12 @@ pub(crate) fn fits_together(graph: &Graph) -> bool {
     types::check(graph).is_empty()
 }
 
-/// Agents that some robot runs, by index.
+/// Agents that some robot runs, or would run if its platform had their ports, by index.
 fn used_agents(graph: &Graph) -> Vec<bool> {
     let mut used = vec![false; graph.agents.len()];
-    for b in graph.robots.iter().flat_map(|r| &r.agents) {
-        if let Some(u) = used.get_mut(b.agent as usize) {
+    let unfit = graph.robots.iter().flat_map(|r| &r.unfit).map(|u| u.agent);
+    for agent in graph.robots.iter().flat_map(|r| &r.agents).map(|b| b.agent).chain(unfit) {
+        if let Some(u) = used.get_mut(agent as usize) {
             *u = true;
         }
     }

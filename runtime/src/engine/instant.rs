@@ -6,6 +6,7 @@ use super::{
     env::Instant,
     judge::{Court, Occasion},
     post::{Delivered, Letter},
+    lives::FLOOD,
     queue::Scheduled,
     report::{INTERRUPTED, RunReport},
 };
@@ -381,6 +382,15 @@ impl Engine<'_> {
         cause: Option<u64>,
         letter: Option<std::sync::Arc<super::post::Letter>>,
     ) {
+        if !self.lives.is_on(unit) {
+            return;
+        }
+        let instance = self.cast.units[unit as usize].instance;
+        if self.lives.floods(instance, self.now) {
+            let why = format!("it floods: more than {FLOOD} activations within 100 ms");
+            self.kill(instance, &why, cause);
+            return;
+        }
         self.clocks[unit as usize].last = Some(self.now);
         let release = Release { unit, release, start: self.now, cause, letter, finish: None };
         match self.core_of(unit) {

@@ -21,12 +21,29 @@ pub(crate) struct Lives {
     failures: BTreeMap<u32, Vec<Time>>,
     /// Units that are released.
     on: Vec<bool>,
+    /// Of each agent: a span of a tenth of a second, and its activations in it.
+    busy: Vec<(Time, u32)>,
 }
+
+/// The most activations of an agent within a tenth of a second. Two that answer each other as fast as messages travel
+/// would hold a run up for good.
+pub(super) const FLOOD: u32 = 40_000;
+const SPAN: Time = Time(100_000_000);
 
 impl Lives {
     /// Everybody lives; offered and stopped units wait.
-    pub fn new(on: Vec<bool>) -> Self {
-        Lives { on, ..Lives::default() }
+    pub fn new(instances: usize, on: Vec<bool>) -> Self {
+        Lives { on, busy: vec![(Time::ZERO, 0); instances], ..Lives::default() }
+    }
+
+    /// Counts an activation of an agent; whether it is one too many.
+    pub fn floods(&mut self, instance: u32, now: Time) -> bool {
+        let (since, count) = &mut self.busy[instance as usize];
+        if now - *since > SPAN {
+            (*since, *count) = (now, 0);
+        }
+        *count += 1;
+        *count > FLOOD
     }
 
     /// Whether an agent is dead.
@@ -42,6 +59,7 @@ impl Lives {
     /// Whether they can be the lives of so many agents with so many units.
     pub fn fits(&self, instances: usize, units: usize) -> bool {
         self.on.len() == units
+            && self.busy.len() == instances
             && self.dead.iter().chain(self.failures.keys()).all(|i| (*i as usize) < instances)
     }
 }

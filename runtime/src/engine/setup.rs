@@ -148,7 +148,10 @@ impl<'m> Engine<'m> {
             events: 0,
             cast,
         };
-        engine.lives = Lives::new((0..units as u32).map(|u| engine.starts_on(u)).collect());
+        engine.lives = Lives::new(
+            engine.cast.instances.len(),
+            (0..units as u32).map(|u| engine.starts_on(u)).collect(),
+        );
         engine.schedule_faults()?;
         Ok(engine)
     }

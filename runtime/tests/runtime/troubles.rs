@@ -156,3 +156,37 @@ fn whoever_talks_with_the_dead_is_told() {
 fn notes_of(fault: &str) -> Vec<String> {
     ran(fault).notes().into_iter().map(|(t, s)| format!("{t} {s}")).collect()
 }
+
+/// Two agents that answer each other as fast as messages travel, and one that has nothing to do with them.
+#[test]
+fn a_ping_pong_without_time_passing_is_ended() {
+    let ran = run(r#"
+edition 1
+record Ball { number: Int }
+agent ping {
+  state n: Int = 0
+  service serve every 1 s { tell pong inform Ball(number: 0) }
+  service back on inform Ball(b) { set n = n + 1 tell pong inform Ball(number: b.number + 1) }
+}
+agent pong {
+  state n: Int = 0
+  service back on inform Ball(b) { set n = n + 1 tell ping inform Ball(number: b.number + 1) }
+}
+agent clerk {
+  state ticks: Int = 0
+  service tick every 10 ms { set ticks = ticks + 1 }
+}
+mission m {
+  host h runs ping, pong, clerk
+  goal g { subgoal s by clerk achieved when ticks >= 100 }
+  within 10 s
+}
+"#);
+    assert_eq!(ran.report.outcome.name(), "success");
+    let deaths = ran.all(|r| match &r.event {
+        Event::Life { agent, status, reason, .. } => Some(format!("{agent} {status}: {reason}")),
+        _ => None,
+    });
+    assert_eq!(deaths.len(), 1);
+    assert!(deaths[0].ends_with("dead: it floods: more than 40000 activations within 100 ms"), "{deaths:?}");
+}
