@@ -1,6 +1,7 @@
 //! Messages that are delivered, to units that a message sets off, and their mailboxes.
 
 use serde::{Deserialize, Serialize};
+use soifra_graph::Name;
 use std::{
     collections::{BTreeMap, VecDeque},
     sync::Arc,
@@ -10,7 +11,7 @@ use std::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Letter {
     /// What it is called in the trace: the topic, or performative and content.
-    pub topic: String,
+    pub topic: Name,
     pub registers: Vec<f64>,
     /// Its record.
     pub record: u64,

@@ -11,7 +11,7 @@ use crate::{
     seed::chance,
 };
 use serde::{Deserialize, Serialize};
-use soifra_graph::Role;
+use soifra_graph::{Name, Role};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A conversation between two agents.
@@ -31,8 +31,8 @@ pub(super) struct Branch {
     entries: [u32; 2],
     /// Messages of each side so far.
     said: [u32; 2],
-    /// The last message that reached each side.
-    heard: [Option<String>; 2],
+    /// Number of the last message that reached each side, among those of the other; 0 before the first.
+    heard: [u32; 2],
     /// Messages that have not arrived yet.
     under_way: u32,
 }
@@ -62,9 +62,9 @@ pub(crate) struct Utterance {
     pub branch: u64,
     /// Who said it.
     pub by: Role,
-    pub performative: String,
-    /// What an answer refers to.
-    pub reply_with: String,
+    pub performative: Name,
+    /// Its number among those of who said it: what an answer refers to.
+    said: u32,
     pub registers: Vec<f64>,
     /// Its record.
     pub record: u64,
@@ -72,7 +72,7 @@ pub(crate) struct Utterance {
 
 /// What is said.
 struct Speech<'s> {
-    performative: &'s str,
+    performative: &'s Name,
     registers: &'s [f64],
     /// Why, in words.
     reason: Option<&'s str>,
@@ -102,7 +102,7 @@ impl Engine<'_> {
         to: &[f64],
         cause: Option<u64>,
     ) {
-        let (conversation, performative) = (opened.conversation, &*opened.performative);
+        let (conversation, performative) = (opened.conversation, &opened.performative);
         let sender = self.cast.units[unit as usize].instance;
         let Some(c) = self.mission.graph.conversations.get(conversation as usize) else { return };
         let opening = c.states.first().and_then(|s| s.move_of(Role::Initiator, performative));
@@ -131,7 +131,7 @@ impl Engine<'_> {
                     states: [0, 0],
                     entries: [0, 0],
                     said: [0, 0],
-                    heard: [None, None],
+                    heard: [0, 0],
                     under_way: 0,
                 },
             );
@@ -152,7 +152,7 @@ impl Engine<'_> {
         &mut self,
         unit: u32,
         thread: f64,
-        performative: &str,
+        performative: &Name,
         reason: Option<&str>,
         registers: &[f64],
         cause: Option<u64>,
@@ -204,10 +204,8 @@ impl Engine<'_> {
         let Some(b) = self.talks.branches.get_mut(&number) else { return };
         let c = &self.mission.graph.conversations[b.conversation as usize];
         b.said[by.index()] += 1;
-        let mark = if by == Role::Initiator { "i" } else { "p" };
-        let reply_with = format!("{}/{mark}{}", number, b.said[by.index()]);
-        let (conversation, peers, id) = (b.conversation, b.peers, b.id.clone());
-        let in_reply_to = b.heard[by.index()].clone();
+        let said = b.said[by.index()];
+        let (conversation, peers) = (b.conversation, b.peers);
         let channel = &self.channels[conversation as usize];
         let (delay, loss) = (channel.delay, channel.loss);
         let after = limit.or(channel.timeouts.get(target as usize).copied().flatten());
@@ -216,14 +214,15 @@ impl Engine<'_> {
         let from = peers[by.index()];
         let to = peers[by.other().index()];
         let record = if self.recorder.on() {
-            let content = c.states.iter().flat_map(|s| &s.moves).find(|m| *m.performative == *performative);
+            let content = c.states.iter().flat_map(|s| &s.moves).find(|m| m.performative == *performative);
             let content = content.and_then(|m| m.content.as_ref()).map(|n| n.to_string());
+            let heard = b.heard[by.index()];
             let thread = Thread {
-                conversation_id: Some(id),
+                conversation_id: Some(b.id.clone()),
                 protocol: Some(c.protocol.to_string()),
                 ontology: Some(c.ontology.to_string()),
-                reply_with: Some(reply_with.clone()),
-                in_reply_to,
+                reply_with: Some(mark(number, by, said)),
+                in_reply_to: (heard > 0).then(|| mark(number, by.other(), heard)),
                 reply_by,
             };
             let event = Event::Acl {
@@ -240,7 +239,6 @@ impl Engine<'_> {
         } else {
             None
         };
-        let said = self.talks.branches[&number].said[by.index()];
         self.enter(number, by, target, limit, record);
         let lost = loss > 0.0
             && chance(self.seed, 1 << 40 | u64::from(conversation), u64::from(from), number, u64::from(said))
@@ -248,8 +246,8 @@ impl Engine<'_> {
         let utterance = Utterance {
             branch: number,
             by,
-            performative: performative.to_string(),
-            reply_with,
+            performative: performative.clone(),
+            said,
             registers: registers.to_vec(),
             record: record.unwrap_or(0),
         };
@@ -269,16 +267,16 @@ impl Engine<'_> {
         let Some(b) = self.talks.branches.get_mut(&number) else { return };
         let before = std::mem::replace(&mut b.states[side.index()], state);
         b.entries[side.index()] += 1;
-        let (entry, conversation, peers, group, id) =
-            (b.entries[side.index()], b.conversation, b.peers, b.group, b.id.clone());
+        let (entry, conversation, peers, group) = (b.entries[side.index()], b.conversation, b.peers, b.group);
         let c = &self.mission.graph.conversations[conversation as usize];
         let s = &c.states[state as usize];
         let me = peers[side.index()];
         if self.recorder.on() {
             let robot = self.cast.instances[me as usize].robot;
+            let conversation_id = b.id.clone();
             let (agent, over) = (self.agent_name(me), s.is_final());
             let event =
-                Event::Conversation { robot, agent, conversation_id: id, state: s.name.to_string(), over };
+                Event::Conversation { robot, agent, conversation_id, state: s.name.to_string(), over };
             self.recorder.record(self.now, cause, || event);
         }
         if s.holds_timeout(side) {
@@ -336,11 +334,11 @@ impl Engine<'_> {
                 false => format!("unexpected in state {}", state.name),
             };
             let over = state.is_final();
-            let answer = state.move_of(side, "not_understood").map(|m| m.target);
+            let answer = state.move_of(side, "not_understood").map(|m| (&m.performative, m.target));
             self.trace_utterance(&u, me, Some(&why));
-            if let (false, Some(target)) = (over, answer) {
+            if let (false, Some((performative, target))) = (over, answer) {
                 let speech = Speech {
-                    performative: "not_understood",
+                    performative,
                     registers: &[],
                     reason: Some(&why),
                     limit: None,
@@ -353,11 +351,11 @@ impl Engine<'_> {
         let target = m.target;
         let record = self.trace_utterance(&u, me, None);
         if let Some(b) = self.talks.branches.get_mut(&u.branch) {
-            b.heard[side.index()] = Some(u.reply_with.clone());
+            b.heard[side.index()] = u.said;
         }
         self.enter(u.branch, side, target, None, record);
-        let what = TalkCode::Message(u.performative.as_str().into());
         let letter = (u.performative.clone(), u.registers, u.record);
+        let what = TalkCode::Message(u.performative);
         let envelope = [f64::from(peers[u.by.index()]), u.branch as f64];
         self.deliver_talk(me, conversation, envelope, &what, letter, record);
     }
@@ -390,7 +388,7 @@ impl Engine<'_> {
             TalkCode::Timeout => "timeout",
             _ => "settled",
         };
-        let letter = (name.to_string(), Vec::new(), 0);
+        let letter = (name.into(), Vec::new(), 0);
         let envelope = [f64::from(peer), number.unwrap_or(u64::MAX >> 12) as f64];
         self.deliver_talk(me, conversation, envelope, what, letter, cause);
     }
@@ -402,7 +400,7 @@ impl Engine<'_> {
         conversation: u32,
         envelope: [f64; 2],
         what: &TalkCode,
-        (topic, registers, record): (String, Vec<f64>, u64),
+        (topic, registers, record): (Name, Vec<f64>, u64),
         cause: Option<u64>,
     ) {
         let info = self.cast.instances[me as usize];
@@ -424,7 +422,7 @@ impl Engine<'_> {
             return None;
         }
         let robot = self.cast.instances[to as usize].robot;
-        let (agent, topic) = (self.agent_name(to), u.performative.clone());
+        let (agent, topic) = (self.agent_name(to), u.performative.to_string());
         let dropped = dropped.map(str::to_string);
         let event = Event::Delivery { robot, agent, topic, message: u.record, dropped };
         self.recorder.record(self.now, Some(u.record), || event)
@@ -436,6 +434,12 @@ impl Engine<'_> {
         let agent = &self.mission.graph.agents[who.agent as usize].name;
         format!("{agent}@{}", self.scene.robots[who.robot as usize].name)
     }
+}
+
+/// What a message is called in the trace, where an answer refers to it.
+fn mark(number: u64, by: Role, said: u32) -> String {
+    let side = if by == Role::Initiator { "i" } else { "p" };
+    format!("{number}/{side}{said}")
 }
 
 fn role(side: Role) -> &'static str {
