@@ -104,7 +104,7 @@ impl<'m> Engine<'m> {
             devices: vec![DeviceState::default(); cast.devices.len()],
             senses: Senses::new(scene, &mission.graph.types),
             boards,
-            mail: Mail::default(),
+            mail: Mail::new(cast.units.len()),
             talks: Talks::default(),
             ended: Vec::new(),
             channels,

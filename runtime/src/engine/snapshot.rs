@@ -11,7 +11,7 @@ use super::{
     directory::Directory,
     goals::Goals,
     minds::Minds,
-    post::Mail,
+    post::Waiting,
     queue::Agenda,
     senses::Senses,
     talks::Talks,
@@ -37,7 +37,7 @@ pub struct Snapshot {
     devices: Vec<DeviceState>,
     senses: Senses,
     boards: Vec<Kept>,
-    mail: Mail,
+    mail: Waiting,
     talks: Talks,
     directory: Directory,
     agenda: Agenda,
@@ -84,7 +84,7 @@ impl Engine<'_> {
                 devices: self.devices.clone(),
                 senses: self.senses.clone(),
                 boards: self.boards.iter().map(|b| b.kept()).collect(),
-                mail: self.mail.clone(),
+                mail: self.mail.waiting(),
                 talks: self.talks.clone(),
                 directory: self.directory.clone(),
                 agenda: self.queue.agenda(),
@@ -136,7 +136,8 @@ impl Engine<'_> {
         (self.tallies, self.cores) = (s.tallies, s.cores);
         self.devices = s.devices;
         (self.talks, self.directory) = (s.talks, s.directory);
-        (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
+        self.mail.resume(s.mail);
+        (self.senses, self.actuators) = (s.senses, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);
         (self.poses, self.movers) = (s.poses, s.movers.into_iter().collect());
         for (watch, tracks) in self.judge.watches.iter_mut().zip(s.tracks) {
