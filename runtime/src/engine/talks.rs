@@ -307,7 +307,11 @@ impl Engine<'_> {
     /// Conversations that are over for both sides are forgotten when nothing of them is under way any more. Who
     /// never heard of one does not wait for its end.
     pub(super) fn forget_talks(&mut self) {
-        for number in std::mem::take(&mut self.ended) {
+        if self.ended.is_empty() {
+            return;
+        }
+        let mut ended = std::mem::take(&mut self.ended);
+        for number in ended.drain(..) {
             let Some(b) = self.talks.branches.get(&number) else { continue };
             let c = &self.mission.graph.conversations[b.conversation as usize];
             let over = |s: u32| c.states[s as usize].is_final();
@@ -316,6 +320,8 @@ impl Engine<'_> {
                 self.talks.branches.remove(&number);
             }
         }
+        // Its room is used at the next instant.
+        self.ended = ended;
     }
 
     /// A message arrives.
