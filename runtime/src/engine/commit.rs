@@ -338,7 +338,10 @@ impl Engine<'_> {
             reason: None,
             thread: Box::default(),
         });
-        let mut to = Vec::new();
+        let letter =
+            Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
+        let letter = Arc::new(letter);
+        let mut handled = false;
         for i in self.cast.of_robot(who.robot) {
             let receiver = &self.cast.instances[i];
             if mission.graph.agents[receiver.agent as usize].name != told.to {
@@ -348,13 +351,13 @@ impl Engine<'_> {
                 let TriggerCode::Told { performative, content, from } = &code.trigger else { continue };
                 let wanted = *performative == told.performative && *content == told.content;
                 if wanted && from.as_ref().is_none_or(|f| f == sender) {
-                    to.push(receiver.units + u as u32);
+                    let to = receiver.units + u as u32;
+                    self.queue.put(now + TELL_DELAY, Scheduled::Hand { letter: letter.clone(), to });
+                    handled = true;
                 }
             }
         }
-        let letter =
-            Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
-        if to.is_empty() {
+        if !handled {
             self.recorder.record(now, record, || Event::Delivery {
                 robot: who.robot,
                 agent: format!("{}@{robot}", told.to),
@@ -362,9 +365,7 @@ impl Engine<'_> {
                 message: letter.record,
                 dropped: Some("nobody handles it".into()),
             });
-            return;
         }
-        self.queue.put(now + TELL_DELAY, Scheduled::Deliver { letter: Arc::new(letter), to });
     }
 
     /// A delivery, or why there is none.

@@ -198,6 +198,11 @@ impl Engine<'_> {
                         mailboxes.push(unit);
                     }
                 }
+                Scheduled::Hand { letter, to } => {
+                    let record = self.trace_delivery(to, &letter, None);
+                    self.put_letter(to, letter, record);
+                    mailboxes.push(to);
+                }
                 Scheduled::DeviceFree { device, by } => self.device_free(device, by),
                 Scheduled::Utter(u) => self.hear(u),
                 Scheduled::Patience { branch, by, entry } => self.patience(branch, by, entry),

@@ -17,6 +17,8 @@ use std::{cmp::Reverse, collections::BinaryHeap, sync::Arc};
 pub(crate) enum Scheduled {
     /// A letter arrives at units.
     Deliver { letter: Arc<Letter>, to: Vec<u32> },
+    /// A letter arrives at one unit.
+    Hand { letter: Arc<Letter>, to: u32 },
     /// Outputs of an activation that took its time.
     Outputs { unit: u32, record: Option<u64>, log: Log },
     /// A use of a device is over.
@@ -82,6 +84,7 @@ impl Queue {
                 *n < agenda.count
                     && match what {
                         Scheduled::Deliver { to, .. } => to.iter().all(known),
+                        Scheduled::Hand { to, .. } => known(to),
                         Scheduled::Outputs { unit, log, .. } => {
                             known(unit) && log.items.iter().all(Item::is_output)
                         }
