@@ -185,7 +185,7 @@ impl Engine<'_> {
     /// Delivers what was put off until now, and releases periodic units.
     fn arrive(&mut self) {
         let now = self.now;
-        let mut mailboxes: Vec<u32> = Vec::new();
+        let mut mailboxes = std::mem::take(&mut self.arriving);
         while let Some(what) = self.queue.take(now) {
             match what {
                 Scheduled::Outputs { unit, record, log } => {
@@ -226,17 +226,20 @@ impl Engine<'_> {
         }
         mailboxes.sort_unstable();
         mailboxes.dedup();
-        for unit in mailboxes {
+        for &unit in &mailboxes {
             self.open_mailbox(unit);
         }
-        let mut due = Vec::new();
+        mailboxes.clear();
+        let mut due = mailboxes;
         self.queue.tick(now, |unit| due.push(unit));
-        for unit in due {
+        for &unit in &due {
             match self.jitter(unit) {
                 Time::ZERO => self.admit(unit, None),
                 late => self.queue.put(now + late, Scheduled::Late { unit, release: now }),
             }
         }
+        due.clear();
+        self.arriving = due;
     }
 
     /// Puts a letter into a mailbox, whose oldest is lost when it is full.

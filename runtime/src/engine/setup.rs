@@ -119,6 +119,7 @@ impl<'m> Engine<'m> {
             poses: vec![None; scene.bodies().len()],
             movers: BTreeMap::new(),
             places: vec![[0.0; 3]; scene.bodies().len()],
+            arriving: Vec::new(),
             readings: Readings::default(),
             reports: Vec::new(),
             releases: Vec::new(),
