@@ -7,7 +7,7 @@
 use super::{Engine, log::Opened, post::Letter, queue::Scheduled};
 use crate::{
     Event, Thread, Time,
-    mission::code::{TalkCode, TriggerCode},
+    mission::code::{TalkCode, TriggerCode, UnitCode},
     seed::chance,
 };
 use serde::{Deserialize, Serialize};
@@ -360,10 +360,9 @@ impl Engine<'_> {
             b.heard[side.index()] = u.said;
         }
         self.enter(u.branch, side, target, None, record);
-        let letter = (u.performative.clone(), u.registers, u.record);
         let what = TalkCode::Message(u.performative);
         let envelope = [f64::from(peers[u.by.index()]), u.branch as f64];
-        self.deliver_talk(me, conversation, envelope, &what, letter, record);
+        self.deliver_talk(me, conversation, envelope, &what, (u.registers, u.record), record);
     }
 
     /// A side has waited long enough.
@@ -390,13 +389,8 @@ impl Engine<'_> {
         what: &TalkCode,
         cause: Option<u64>,
     ) {
-        let name = match what {
-            TalkCode::Timeout => "timeout",
-            _ => "settled",
-        };
-        let letter = (name.into(), Vec::new(), 0);
         let envelope = [f64::from(peer), number.unwrap_or(u64::MAX >> 12) as f64];
-        self.deliver_talk(me, conversation, envelope, what, letter, cause);
+        self.deliver_talk(me, conversation, envelope, what, (Vec::new(), 0), cause);
     }
 
     /// Puts a letter into the mailboxes of the units that wait for it.
@@ -406,20 +400,31 @@ impl Engine<'_> {
         conversation: u32,
         envelope: [f64; 2],
         what: &TalkCode,
-        (topic, registers, record): (Name, Vec<f64>, u64),
+        (registers, record): (Vec<f64>, u64),
         cause: Option<u64>,
     ) {
         let info = self.cast.instances[me as usize];
         let units = &self.mission.agents[info.agent as usize].units;
+        let waits = |code: &UnitCode| {
+            let TriggerCode::Talk { conversation: c, what: w } = &code.trigger else { return false };
+            *c == conversation && w == what
+        };
+        let mut waiting =
+            (info.units..).zip(units).filter(|(_, code)| waits(code)).map(|(unit, _)| unit).peekable();
+        // Often nobody asks whether all have answered: then there is nothing to make.
+        if waiting.peek().is_none() {
+            return;
+        }
+        let topic = match what {
+            TalkCode::Message(performative) => performative.clone(),
+            TalkCode::Timeout => "timeout".into(),
+            TalkCode::Settled => "settled".into(),
+        };
         let capacity = self.channels[conversation as usize].capacity;
         let letter = Arc::new(Letter { topic, registers, record, capacity, envelope: Some(envelope) });
-        for (u, code) in units.iter().enumerate() {
-            let TriggerCode::Talk { conversation: c, what: w } = &code.trigger else { continue };
-            if *c == conversation && w == what {
-                let unit = info.units + u as u32;
-                self.put_letter(unit, letter.clone(), cause);
-                self.open_mailbox(unit);
-            }
+        for unit in waiting {
+            self.put_letter(unit, letter.clone(), cause);
+            self.open_mailbox(unit);
         }
     }
 
