@@ -30,7 +30,8 @@ results: build
 	@tools/results $(SOIFRA)
 
 bench: setup
-	@cargo bench --bench engine --bench swarm --bench check --bench run -- --quiet
+	@cargo bench --bench engine --bench swarm --bench check --bench run --bench message --bench matcher \
+	  --bench agents -- --quiet
 
 fmt: setup
 	@cargo fmt --all

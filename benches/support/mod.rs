@@ -105,11 +105,16 @@ pub fn read(path: &str) -> String {
     std::fs::read_to_string(project(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
 }
 
+/// Where files of the benches' own are.
+pub fn scratch_path(name: &str) -> String {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name).to_string_lossy().into_owned()
+}
+
 /// A file of the bench's own, made anew.
 pub fn scratch(name: &str, text: &str) -> String {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-    path.to_string_lossy().into_owned()
+    let path = scratch_path(name);
+    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{path}: {e}"));
+    path
 }
 
 /// A mission compiled from its source, with the settings of its runs.
@@ -142,13 +147,12 @@ pub fn run(prepared: &execute::Prepared<'_>) -> (RunReport, f64) {
     (report, watch.seconds())
 }
 
-/// Runs with a trace in a file.
+/// Runs with a trace in a file of the bench's own, or in one that an absolute path names.
 pub fn run_traced(prepared: &execute::Prepared<'_>, name: &str) -> (RunReport, f64) {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let path = scratch_path(name);
     let watch = Stopwatch::start();
-    let (report, _) = prepared
-        .run_traced(&path.to_string_lossy(), &AtomicBool::new(false), None)
-        .unwrap_or_else(|r| refused(r));
+    let (report, _) =
+        prepared.run_traced(&path, &AtomicBool::new(false), None).unwrap_or_else(|r| refused(r));
     (report, watch.seconds())
 }
 

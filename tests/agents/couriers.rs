@@ -193,15 +193,21 @@ fn look() {
         match &r.event {
             Event::Note { agent, text, .. } => println!("{:.3} {agent} {text}", r.t.seconds()),
             Event::Life { agent, status, .. } => println!("{:.3} {agent} {status}", r.t.seconds()),
-            Event::Acl { performative, sender, receiver, registers, thread, .. } if performative != "query_ref" => println!(
-                "{:.3} {performative} {sender} {receiver} {registers:?} {:?}",
-                r.t.seconds(),
-                thread.conversation_id
-            ),
+            Event::Acl { performative, sender, receiver, registers, thread, .. }
+                if performative != "query_ref" =>
+            {
+                println!(
+                    "{:.3} {performative} {sender} {receiver} {registers:?} {:?}",
+                    r.t.seconds(),
+                    thread.conversation_id
+                )
+            }
             Event::Delivery { agent, dropped: Some(why), topic, .. } if topic != "whereabouts" => {
                 println!("{:.3} DROPPED {agent} {topic} {why}", r.t.seconds())
             }
-            Event::Reading { robot, sensor: 2, registers, .. } if registers[0] == 0.0 && r.t.0 % 1_000_000_000 == 0 => {
+            Event::Reading { robot, sensor: 2, registers, .. }
+                if registers[0] == 0.0 && r.t.0 % 1_000_000_000 == 0 =>
+            {
                 println!("{:.3} r{robot} holds {}", r.t.seconds(), registers[1])
             }
             _ => {}

@@ -171,12 +171,11 @@ impl Engine<'_> {
                 self.tell(unit, told, registers, cause);
             }
             Item::Open(o) => {
-                let (registers, to) = (log.get(&o.registers).to_vec(), log.get(&o.to).to_vec());
-                self.open_talk(unit, o, &registers, &to, cause);
+                self.open_talk(unit, o, log.get(&o.registers), log.get(&o.to), cause);
             }
             Item::Reply(r) => {
-                let registers = log.get(&r.registers).to_vec();
-                self.reply_talk(unit, r.thread, &r.performative, r.reason.as_deref(), &registers, cause);
+                let registers = log.get(&r.registers);
+                self.reply_talk(unit, r.thread, &r.performative, r.reason.as_deref(), registers, cause);
             }
             Item::Raise(event) => {
                 let agent = &mission.agents[who.agent as usize];
@@ -328,7 +327,7 @@ impl Engine<'_> {
             }
             if board.lost(sender, receiver, number) { lost.push(u) } else { to.push(u) }
         }
-        let name = self.mission.topics[topic as usize].name.to_string();
+        let name = self.mission.topics[topic as usize].name.clone();
         let (delay, capacity) = (board.channel.delay, board.channel.capacity);
         let letter = Letter {
             topic: name,
@@ -350,21 +349,27 @@ impl Engine<'_> {
         let info = self.cast.units[unit as usize];
         let who = self.cast.instances[info.instance as usize];
         let mission = self.mission;
-        let (agent, _) = self.names(unit);
         let sender = &mission.graph.agents[who.agent as usize].name;
-        let topic = format!("{} {}", told.performative, told.content);
         let robot = &self.scene.robots[who.robot as usize].name;
+        // Only the trace says performative and content.
+        let topic = match self.recorder.on() {
+            true => format!("{} {}", told.performative, told.content).into(),
+            false => told.content.clone(),
+        };
         let record = self.recorder.record(now, cause, || Event::Acl {
             robot: who.robot,
             performative: told.performative.to_string(),
-            sender: agent,
+            sender: format!("{sender}@{robot}"),
             receiver: format!("{}@{robot}", told.to),
             content: Some(told.content.to_string()),
             registers: registers.clone(),
             reason: None,
             thread: Box::default(),
         });
-        let mut to = Vec::new();
+        let letter =
+            Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
+        let letter = Arc::new(letter);
+        let mut handled = false;
         for i in self.cast.of_robot(who.robot) {
             let receiver = &self.cast.instances[i];
             if mission.graph.agents[receiver.agent as usize].name != told.to {
@@ -374,23 +379,21 @@ impl Engine<'_> {
                 let TriggerCode::Told { performative, content, from } = &code.trigger else { continue };
                 let wanted = *performative == told.performative && *content == told.content;
                 if wanted && from.as_ref().is_none_or(|f| f == sender) {
-                    to.push(receiver.units + u as u32);
+                    let to = receiver.units + u as u32;
+                    self.queue.put(now + TELL_DELAY, Scheduled::Hand { letter: letter.clone(), to });
+                    handled = true;
                 }
             }
         }
-        let letter =
-            Letter { topic, registers, record: record.unwrap_or(0), capacity: TELL_CAPACITY, envelope: None };
-        if to.is_empty() {
+        if !handled {
             self.recorder.record(now, record, || Event::Delivery {
                 robot: who.robot,
                 agent: format!("{}@{robot}", told.to),
-                topic: letter.topic.clone(),
+                topic: letter.topic.to_string(),
                 message: letter.record,
                 dropped: Some("nobody handles it".into()),
             });
-            return;
         }
-        self.queue.put(now + TELL_DELAY, Scheduled::Deliver { letter: Arc::new(letter), to });
     }
 
     /// A delivery, or why there is none.
@@ -408,7 +411,7 @@ impl Engine<'_> {
         self.recorder.record(self.now, Some(letter.record), || Event::Delivery {
             robot,
             agent,
-            topic: letter.topic.clone(),
+            topic: letter.topic.to_string(),
             message: letter.record,
             dropped: dropped.map(str::to_string),
         })

@@ -5,8 +5,8 @@ use super::{
     activate::Release,
     env::Instant,
     judge::{Court, Occasion},
-    post::{Delivered, Letter},
     lives::FLOOD,
+    post::{Delivered, Letter},
     queue::Scheduled,
     report::{INTERRUPTED, RunReport},
 };
@@ -202,7 +202,7 @@ impl Engine<'_> {
     /// Delivers what was put off until now, and releases periodic units.
     fn arrive(&mut self) {
         let now = self.now;
-        let mut mailboxes: Vec<u32> = Vec::new();
+        let mut mailboxes = std::mem::take(&mut self.arriving);
         while let Some(what) = self.queue.take(now) {
             match what {
                 Scheduled::Outputs { unit, record, log } => {
@@ -214,6 +214,11 @@ impl Engine<'_> {
                         self.put_letter(unit, letter.clone(), record);
                         mailboxes.push(unit);
                     }
+                }
+                Scheduled::Hand { letter, to } => {
+                    let record = self.trace_delivery(to, &letter, None);
+                    self.put_letter(to, letter, record);
+                    mailboxes.push(to);
                 }
                 Scheduled::DeviceFree { device, by } => self.device_free(device, by),
                 Scheduled::Utter(u) => self.hear(u),
@@ -246,17 +251,20 @@ impl Engine<'_> {
         }
         mailboxes.sort_unstable();
         mailboxes.dedup();
-        for unit in mailboxes {
+        for &unit in &mailboxes {
             self.open_mailbox(unit);
         }
-        let mut due = Vec::new();
+        mailboxes.clear();
+        let mut due = mailboxes;
         self.queue.tick(now, |unit| due.push(unit));
-        for unit in due {
+        for &unit in &due {
             match self.jitter(unit) {
                 Time::ZERO => self.admit(unit, None),
                 late => self.queue.put(now + late, Scheduled::Late { unit, release: now }),
             }
         }
+        due.clear();
+        self.arriving = due;
     }
 
     /// Puts a letter into a mailbox, whose oldest is lost when it is full.

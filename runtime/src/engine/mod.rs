@@ -144,6 +144,7 @@ pub struct Engine<'m> {
 
     // Room that is kept between instants.
     places: Vec<[f64; 3]>,
+    arriving: Vec<u32>,
     readings: Readings,
     reports: Vec<Report>,
     releases: Vec<Release>,

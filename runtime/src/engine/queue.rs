@@ -11,17 +11,15 @@ use super::{
 use crate::Time;
 use serde::{Deserialize, Serialize};
 use soifra_graph::Role;
-use std::{
-    cmp::Reverse,
-    collections::{BTreeMap, BinaryHeap},
-    sync::Arc,
-};
+use std::{cmp::Reverse, collections::BinaryHeap, sync::Arc};
 
 /// Something put off.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) enum Scheduled {
     /// A letter arrives at units.
     Deliver { letter: Arc<Letter>, to: Vec<u32> },
+    /// A letter arrives at one unit.
+    Hand { letter: Arc<Letter>, to: u32 },
     /// Outputs of an activation that took its time.
     Outputs { unit: u32, record: Option<u64>, log: Log },
     /// A use of a device is over.
@@ -57,7 +55,13 @@ pub(crate) enum Scheduled {
 pub(crate) struct Queue {
     timers: Vec<Timer>,
     due: BinaryHeap<Reverse<(Time, u32)>>,
-    scheduled: BTreeMap<(Time, u64), Scheduled>,
+    /// When what was put off is due, with its number, and its place in `kept`: a heap moves what it holds, and
+    /// what is put off is large. Most of it is put off to the end of the heap, where that costs least: how long
+    /// somebody waits for an answer.
+    scheduled: BinaryHeap<Reverse<(Time, u64, u32)>>,
+    kept: Vec<Option<Scheduled>>,
+    /// Places of `kept` that are free.
+    free: Vec<u32>,
     count: u64,
 }
 
@@ -74,7 +78,10 @@ pub(crate) struct Agenda {
 impl Queue {
     /// The future as it is now.
     pub fn agenda(&self) -> Agenda {
-        let scheduled = self.scheduled.iter().map(|((t, n), what)| (*t, *n, what.clone()));
+        let mut scheduled: Vec<_> = self.scheduled.iter().map(|Reverse(s)| *s).collect();
+        scheduled.sort_unstable();
+        let what = |at: u32| self.kept.get(at as usize).cloned().flatten();
+        let scheduled = scheduled.into_iter().filter_map(|(t, n, at)| Some((t, n, what(at)?)));
         Agenda {
             timers: self.timers.iter().map(|t| t.next).collect(),
             scheduled: scheduled.collect(),
@@ -90,6 +97,7 @@ impl Queue {
                 *n < agenda.count
                     && match what {
                         Scheduled::Deliver { to, .. } => to.iter().all(known),
+                        Scheduled::Hand { to, .. } => known(to),
                         Scheduled::Outputs { unit, log, .. } => {
                             known(unit) && log.items.iter().all(Item::is_output)
                         }
@@ -114,7 +122,11 @@ impl Queue {
             timer.next = next;
         }
         self.due = self.timers.iter().enumerate().map(|(i, t)| Reverse((t.next, i as u32))).collect();
-        self.scheduled = agenda.scheduled.into_iter().map(|(t, n, what)| ((t, n), what)).collect();
+        (self.scheduled, self.kept, self.free) = Default::default();
+        for (t, n, what) in agenda.scheduled {
+            let at = self.keep(what);
+            self.scheduled.push(Reverse((t, n, at)));
+        }
         self.count = agenda.count;
         true
     }
@@ -126,33 +138,60 @@ impl Queue {
 
     /// Puts something off until `at`; what was put off first comes first.
     pub fn put(&mut self, at: Time, what: Scheduled) {
-        self.scheduled.insert((at, self.count), what);
+        let place = self.keep(what);
+        self.scheduled.push(Reverse((at, self.count, place)));
         self.count += 1;
     }
 
     /// What was put off for some units is not to happen; messages to them are.
     pub fn drop_units(&mut self, units: &std::ops::Range<u32>) {
-        self.scheduled.retain(|_, what| match what {
-            Scheduled::Outputs { unit, .. }
-            | Scheduled::Wake(unit)
-            | Scheduled::Late { unit, .. }
-            | Scheduled::Deadline { unit, .. } => !units.contains(unit),
-            Scheduled::DeviceFree { by, .. } => !units.contains(&by.unit),
-            _ => true,
+        let (kept, free) = (&mut self.kept, &mut self.free);
+        self.scheduled.retain(|Reverse((_, _, at))| {
+            let stays = match kept.get(*at as usize).and_then(Option::as_ref) {
+                Some(
+                    Scheduled::Outputs { unit, .. }
+                    | Scheduled::Wake(unit)
+                    | Scheduled::Late { unit, .. }
+                    | Scheduled::Deadline { unit, .. },
+                ) => !units.contains(unit),
+                Some(Scheduled::DeviceFree { by, .. }) => !units.contains(&by.unit),
+                _ => true,
+            };
+            if !stays {
+                kept[*at as usize] = None;
+                free.push(*at);
+            }
+            stays
         });
+    }
+
+    /// Keeps something; gives its place.
+    fn keep(&mut self, what: Scheduled) -> u32 {
+        match self.free.pop() {
+            Some(at) => {
+                self.kept[at as usize] = Some(what);
+                at
+            }
+            None => {
+                self.kept.push(Some(what));
+                (self.kept.len() - 1) as u32
+            }
+        }
     }
 
     /// When something happens next.
     pub fn next(&self) -> Option<Time> {
         let timer = self.due.peek().map(|r| r.0.0);
-        let scheduled = self.scheduled.first_key_value().map(|(k, _)| k.0);
+        let scheduled = self.scheduled.peek().map(|r| r.0.0);
         [timer, scheduled].into_iter().flatten().min()
     }
 
     /// Takes what was put off until `now`.
     pub fn take(&mut self, now: Time) -> Option<Scheduled> {
-        let first = self.scheduled.first_entry()?;
-        (first.key().0 <= now).then(|| first.remove())
+        self.scheduled.peek().filter(|r| r.0.0 <= now)?;
+        let Reverse((_, _, at)) = self.scheduled.pop()?;
+        self.free.push(at);
+        self.kept[at as usize].take()
     }
 
     /// Visits the units of all timers that are due at `now`, and sets the timers to their next instant.

@@ -117,7 +117,7 @@ impl<'m> Engine<'m> {
             devices: vec![DeviceState::default(); cast.devices.len()],
             senses: Senses::new(scene, &mission.graph.types),
             boards,
-            mail: Mail::default(),
+            mail: Mail::new(cast.units.len()),
             talks: Talks::default(),
             ended: Vec::new(),
             channels,
@@ -139,6 +139,7 @@ impl<'m> Engine<'m> {
             poses: vec![None; scene.bodies().len()],
             movers: BTreeMap::new(),
             places: vec![[0.0; 3]; scene.bodies().len()],
+            arriving: Vec::new(),
             readings: Readings::default(),
             reports: Vec::new(),
             releases: Vec::new(),
@@ -148,10 +149,8 @@ impl<'m> Engine<'m> {
             events: 0,
             cast,
         };
-        engine.lives = Lives::new(
-            engine.cast.instances.len(),
-            (0..units as u32).map(|u| engine.starts_on(u)).collect(),
-        );
+        engine.lives =
+            Lives::new(engine.cast.instances.len(), (0..units as u32).map(|u| engine.starts_on(u)).collect());
         engine.schedule_faults()?;
         Ok(engine)
     }

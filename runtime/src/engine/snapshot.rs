@@ -13,7 +13,7 @@ use super::{
     lives::Lives,
     minds::Minds,
     planner::Planner,
-    post::Mail,
+    post::Waiting,
     queue::Agenda,
     senses::Senses,
     talks::Talks,
@@ -39,7 +39,7 @@ pub struct Snapshot {
     devices: Vec<DeviceState>,
     senses: Senses,
     boards: Vec<Kept>,
-    mail: Mail,
+    mail: Waiting,
     talks: Talks,
     directory: Directory,
     lives: Lives,
@@ -89,7 +89,7 @@ impl Engine<'_> {
                 devices: self.devices.clone(),
                 senses: self.senses.clone(),
                 boards: self.boards.iter().map(|b| b.kept()).collect(),
-                mail: self.mail.clone(),
+                mail: self.mail.waiting(),
                 talks: self.talks.clone(),
                 directory: self.directory.clone(),
                 lives: self.lives.clone(),
@@ -147,7 +147,8 @@ impl Engine<'_> {
         self.devices = s.devices;
         (self.talks, self.directory) = (s.talks, s.directory);
         (self.lives, self.planner, self.faults) = (s.lives, s.planner, s.faults);
-        (self.senses, self.mail, self.actuators) = (s.senses, s.mail, s.actuators);
+        self.mail.resume(s.mail);
+        (self.senses, self.actuators) = (s.senses, s.actuators);
         (self.contacts, self.goals) = (s.contacts, s.goals);
         (self.poses, self.movers) = (s.poses, s.movers.into_iter().collect());
         for (watch, tracks) in self.judge.watches.iter_mut().zip(s.tracks) {

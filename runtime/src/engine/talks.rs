@@ -7,11 +7,11 @@
 use super::{Engine, log::Opened, post::Letter, queue::Scheduled, troubles::Route};
 use crate::{
     Event, Thread, Time,
-    mission::code::{TalkCode, TriggerCode},
+    mission::code::{TalkCode, TriggerCode, UnitCode},
     seed::chance,
 };
 use serde::{Deserialize, Serialize};
-use soifra_graph::Role;
+use soifra_graph::{Name, Role};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A conversation between two agents.
@@ -31,8 +31,8 @@ pub(super) struct Branch {
     entries: [u32; 2],
     /// Messages of each side so far.
     said: [u32; 2],
-    /// The last message that reached each side.
-    heard: [Option<String>; 2],
+    /// Number of the last message that reached each side, among those of the other; 0 before the first.
+    heard: [u32; 2],
     /// Messages that have not arrived yet.
     under_way: u32,
     /// Sides whose agent has died.
@@ -64,9 +64,9 @@ pub(crate) struct Utterance {
     pub branch: u64,
     /// Who said it.
     pub by: Role,
-    pub performative: String,
-    /// What an answer refers to.
-    pub reply_with: String,
+    pub performative: Name,
+    /// Its number among those of who said it: what an answer refers to.
+    said: u32,
     pub registers: Vec<f64>,
     /// Its record.
     pub record: u64,
@@ -77,7 +77,7 @@ pub(crate) struct Utterance {
 
 /// What is said.
 struct Speech<'s> {
-    performative: &'s str,
+    performative: &'s Name,
     registers: &'s [f64],
     /// Why, in words.
     reason: Option<&'s str>,
@@ -107,7 +107,7 @@ impl Engine<'_> {
         to: &[f64],
         cause: Option<u64>,
     ) {
-        let (conversation, performative) = (opened.conversation, &*opened.performative);
+        let (conversation, performative) = (opened.conversation, &opened.performative);
         let sender = self.cast.units[unit as usize].instance;
         let Some(c) = self.mission.graph.conversations.get(conversation as usize) else { return };
         let opening = c.states.first().and_then(|s| s.move_of(Role::Initiator, performative));
@@ -136,7 +136,7 @@ impl Engine<'_> {
                     states: [0, 0],
                     entries: [0, 0],
                     said: [0, 0],
-                    heard: [None, None],
+                    heard: [0, 0],
                     under_way: 0,
                     gone: [false, false],
                 },
@@ -158,7 +158,7 @@ impl Engine<'_> {
         &mut self,
         unit: u32,
         thread: f64,
-        performative: &str,
+        performative: &Name,
         reason: Option<&str>,
         registers: &[f64],
         cause: Option<u64>,
@@ -210,10 +210,8 @@ impl Engine<'_> {
         let Some(b) = self.talks.branches.get_mut(&number) else { return };
         let c = &self.mission.graph.conversations[b.conversation as usize];
         b.said[by.index()] += 1;
-        let mark = if by == Role::Initiator { "i" } else { "p" };
-        let reply_with = format!("{}/{mark}{}", number, b.said[by.index()]);
-        let (conversation, peers, id) = (b.conversation, b.peers, b.id.clone());
-        let in_reply_to = b.heard[by.index()].clone();
+        let said = b.said[by.index()];
+        let (conversation, peers) = (b.conversation, b.peers);
         let channel = &self.channels[conversation as usize];
         let (delay, loss) = (channel.delay, channel.loss);
         let after = limit.or(channel.timeouts.get(target as usize).copied().flatten());
@@ -222,14 +220,15 @@ impl Engine<'_> {
         let from = peers[by.index()];
         let to = peers[by.other().index()];
         let record = if self.recorder.on() {
-            let content = c.states.iter().flat_map(|s| &s.moves).find(|m| *m.performative == *performative);
+            let content = c.states.iter().flat_map(|s| &s.moves).find(|m| m.performative == *performative);
             let content = content.and_then(|m| m.content.as_ref()).map(|n| n.to_string());
+            let heard = b.heard[by.index()];
             let thread = Thread {
-                conversation_id: Some(id),
+                conversation_id: Some(b.id.clone()),
                 protocol: Some(c.protocol.to_string()),
                 ontology: Some(c.ontology.to_string()),
-                reply_with: Some(reply_with.clone()),
-                in_reply_to,
+                reply_with: Some(mark(number, by, said)),
+                in_reply_to: (heard > 0).then(|| mark(number, by.other(), heard)),
                 reply_by,
             };
             let event = Event::Acl {
@@ -246,7 +245,6 @@ impl Engine<'_> {
         } else {
             None
         };
-        let said = self.talks.branches[&number].said[by.index()];
         self.enter(number, by, target, limit, record);
         let lost = loss > 0.0
             && chance(self.seed, 1 << 40 | u64::from(conversation), u64::from(from), number, u64::from(said))
@@ -254,8 +252,8 @@ impl Engine<'_> {
         let utterance = Utterance {
             branch: number,
             by,
-            performative: performative.to_string(),
-            reply_with,
+            performative: performative.clone(),
+            said,
             registers: registers.to_vec(),
             record: record.unwrap_or(0),
             unreadable: false,
@@ -281,16 +279,16 @@ impl Engine<'_> {
         let Some(b) = self.talks.branches.get_mut(&number) else { return };
         let before = std::mem::replace(&mut b.states[side.index()], state);
         b.entries[side.index()] += 1;
-        let (entry, conversation, peers, group, id) =
-            (b.entries[side.index()], b.conversation, b.peers, b.group, b.id.clone());
+        let (entry, conversation, peers, group) = (b.entries[side.index()], b.conversation, b.peers, b.group);
         let c = &self.mission.graph.conversations[conversation as usize];
         let s = &c.states[state as usize];
         let me = peers[side.index()];
         if self.recorder.on() {
             let robot = self.cast.instances[me as usize].robot;
+            let conversation_id = b.id.clone();
             let (agent, over) = (self.agent_name(me), s.is_final());
             let event =
-                Event::Conversation { robot, agent, conversation_id: id, state: s.name.to_string(), over };
+                Event::Conversation { robot, agent, conversation_id, state: s.name.to_string(), over };
             self.recorder.record(self.now, cause, || event);
         }
         if s.holds_timeout(side) {
@@ -321,7 +319,11 @@ impl Engine<'_> {
     /// Conversations that are over for both sides are forgotten when nothing of them is under way any more. Who
     /// never heard of one does not wait for its end.
     pub(super) fn forget_talks(&mut self) {
-        for number in std::mem::take(&mut self.ended) {
+        if self.ended.is_empty() {
+            return;
+        }
+        let mut ended = std::mem::take(&mut self.ended);
+        for number in ended.drain(..) {
             let Some(b) = self.talks.branches.get(&number) else { continue };
             let c = &self.mission.graph.conversations[b.conversation as usize];
             let over = |s: u32| c.states[s as usize].is_final();
@@ -331,6 +333,8 @@ impl Engine<'_> {
                 self.talks.branches.remove(&number);
             }
         }
+        // Its room is used at the next instant.
+        self.ended = ended;
     }
 
     /// A message arrives.
@@ -348,7 +352,7 @@ impl Engine<'_> {
             return;
         }
         // The same message once more says nothing new.
-        if b.heard[side.index()].as_ref() == Some(&u.reply_with) {
+        if b.heard[side.index()] == u.said {
             self.trace_utterance(&u, me, Some("a duplicate"));
             return;
         }
@@ -364,11 +368,11 @@ impl Engine<'_> {
                 false => format!("unexpected in state {}", state.name),
             };
             let over = state.is_final();
-            let answer = state.move_of(side, "not_understood").map(|m| m.target);
+            let answer = state.move_of(side, "not_understood").map(|m| (&m.performative, m.target));
             self.trace_utterance(&u, me, Some(&why));
-            if let (false, Some(target)) = (over, answer) {
+            if let (false, Some((performative, target))) = (over, answer) {
                 let speech = Speech {
-                    performative: "not_understood",
+                    performative,
                     registers: &[],
                     reason: Some(&why),
                     limit: None,
@@ -381,13 +385,12 @@ impl Engine<'_> {
         let target = m.target;
         let record = self.trace_utterance(&u, me, None);
         if let Some(b) = self.talks.branches.get_mut(&u.branch) {
-            b.heard[side.index()] = Some(u.reply_with.clone());
+            b.heard[side.index()] = u.said;
         }
         self.enter(u.branch, side, target, None, record);
-        let what = TalkCode::Message(u.performative.as_str().into());
-        let letter = (u.performative.clone(), u.registers, u.record);
+        let what = TalkCode::Message(u.performative);
         let envelope = [f64::from(peers[u.by.index()]), u.branch as f64];
-        self.deliver_talk(me, conversation, envelope, &what, letter, record);
+        self.deliver_talk(me, conversation, envelope, &what, (u.registers, u.record), record);
     }
 
     /// A message that nobody can read, by a fault: the receiver says so where its protocol lets it.
@@ -397,12 +400,11 @@ impl Engine<'_> {
         let c = &self.mission.graph.conversations[b.conversation as usize];
         let state = &c.states[b.states[side.index()] as usize];
         let Some(heard) = state.move_of(u.by, &u.performative).map(|m| m.target) else { return };
-        let answer = c.states[heard as usize].move_of(side, "not_understood").map(|m| m.target);
-        let Some(target) = answer else { return };
+        let Some(answer) = c.states[heard as usize].move_of(side, "not_understood") else { return };
+        let (performative, target) = (&answer.performative, answer.target);
         self.enter(u.branch, side, heard, None, record);
         let reason = Some("unreadable");
-        let speech =
-            Speech { performative: "not_understood", registers: &[], reason, limit: None, cause: record };
+        let speech = Speech { performative, registers: &[], reason, limit: None, cause: record };
         self.utter(u.branch, side, target, &speech);
     }
 
@@ -474,7 +476,7 @@ impl Engine<'_> {
         if let Some(target) = failure.map(|m| m.target) {
             self.enter(number, side, target, None, record);
             let what = TalkCode::Message("failure".into());
-            let letter = ("failure".to_string(), Vec::new(), record.unwrap_or(0));
+            let letter = (Vec::new(), record.unwrap_or(0));
             let envelope = [f64::from(peer), number as f64];
             self.deliver_talk(me, conversation, envelope, &what, letter, record);
             return;
@@ -512,13 +514,8 @@ impl Engine<'_> {
         what: &TalkCode,
         cause: Option<u64>,
     ) {
-        let name = match what {
-            TalkCode::Timeout => "timeout",
-            _ => "settled",
-        };
-        let letter = (name.to_string(), Vec::new(), 0);
         let envelope = [f64::from(peer), number.unwrap_or(u64::MAX >> 12) as f64];
-        self.deliver_talk(me, conversation, envelope, what, letter, cause);
+        self.deliver_talk(me, conversation, envelope, what, (Vec::new(), 0), cause);
     }
 
     /// Puts a letter into the mailboxes of the units that wait for it.
@@ -528,20 +525,31 @@ impl Engine<'_> {
         conversation: u32,
         envelope: [f64; 2],
         what: &TalkCode,
-        (topic, registers, record): (String, Vec<f64>, u64),
+        (registers, record): (Vec<f64>, u64),
         cause: Option<u64>,
     ) {
         let info = self.cast.instances[me as usize];
         let units = &self.mission.agents[info.agent as usize].units;
+        let waits = |code: &UnitCode| {
+            let TriggerCode::Talk { conversation: c, what: w } = &code.trigger else { return false };
+            *c == conversation && w == what
+        };
+        let mut waiting =
+            (info.units..).zip(units).filter(|(_, code)| waits(code)).map(|(unit, _)| unit).peekable();
+        // Often nobody asks whether all have answered: then there is nothing to make.
+        if waiting.peek().is_none() {
+            return;
+        }
+        let topic = match what {
+            TalkCode::Message(performative) => performative.clone(),
+            TalkCode::Timeout => "timeout".into(),
+            TalkCode::Settled => "settled".into(),
+        };
         let capacity = self.channels[conversation as usize].capacity;
         let letter = Arc::new(Letter { topic, registers, record, capacity, envelope: Some(envelope) });
-        for (u, code) in units.iter().enumerate() {
-            let TriggerCode::Talk { conversation: c, what: w } = &code.trigger else { continue };
-            if *c == conversation && w == what {
-                let unit = info.units + u as u32;
-                self.put_letter(unit, letter.clone(), cause);
-                self.open_mailbox(unit);
-            }
+        for unit in waiting {
+            self.put_letter(unit, letter.clone(), cause);
+            self.open_mailbox(unit);
         }
     }
 
@@ -550,7 +558,7 @@ impl Engine<'_> {
             return None;
         }
         let robot = self.cast.instances[to as usize].robot;
-        let (agent, topic) = (self.agent_name(to), u.performative.clone());
+        let (agent, topic) = (self.agent_name(to), u.performative.to_string());
         let dropped = dropped.map(str::to_string);
         let event = Event::Delivery { robot, agent, topic, message: u.record, dropped };
         self.recorder.record(self.now, Some(u.record), || event)
@@ -562,6 +570,12 @@ impl Engine<'_> {
         let agent = &self.mission.graph.agents[who.agent as usize].name;
         format!("{agent}@{}", self.scene.robots[who.robot as usize].name)
     }
+}
+
+/// What a message is called in the trace, where an answer refers to it.
+fn mark(number: u64, by: Role, said: u32) -> String {
+    let side = if by == Role::Initiator { "i" } else { "p" };
+    format!("{number}/{side}{said}")
 }
 
 fn role(side: Role) -> &'static str {
