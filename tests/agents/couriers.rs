@@ -38,7 +38,7 @@ fn seeds() -> u64 {
     std::env::var("SOIFRA_SEEDS").ok().and_then(|n| n.parse().ok()).unwrap_or(10)
 }
 
-/// An agent has been given a parcel and has not done with it.
+/// A courier has a job, as it believes, until it is done, given up, or dead.
 struct Assignment {
     parcel: u32,
     courier: String,
@@ -54,38 +54,30 @@ struct Course {
     dead: BTreeMap<String, Time>,
     /// Conversations of live agents that are not over.
     open: BTreeSet<(String, String)>,
+    /// How many conversations each dispatcher has with somebody.
+    called: BTreeMap<String, i64>,
     /// What each robot's gripper holds.
     held: BTreeMap<u32, Option<u32>>,
     /// How full each robot's battery is.
     charge: BTreeMap<u32, f64>,
     robots: BTreeMap<String, u32>,
+    /// Where each parcel is, north.
+    parcels: BTreeMap<String, f64>,
 }
 
 fn course(records: &[Record]) -> Course {
     let mut c = Course::default();
-    // The parcel that a conversation is about, and which conversation a courier has been awarded.
-    let mut about: BTreeMap<String, u32> = BTreeMap::new();
     for r in records {
         match &r.event {
-            Event::Acl { performative, sender, receiver, registers, thread, robot, .. } => {
-                let id = thread.conversation_id.clone().unwrap_or_default();
+            Event::Acl { sender, robot, .. } => {
                 if sender.starts_with("courier") {
                     c.robots.insert(sender.clone(), *robot);
                 }
-                match performative.as_str() {
-                    "cfp" => _ = about.insert(id, registers[0] as u32),
-                    "accept_proposal" => c.assignments.push(Assignment {
-                        parcel: about[&id],
-                        courier: receiver.clone(),
-                        from: r.t,
-                        to: None,
-                    }),
-                    "inform" | "failure" if sender.starts_with("courier") && about.contains_key(&id) => {
-                        let done = |a: &&mut Assignment| a.courier == *sender && a.to.is_none();
-                        c.assignments.iter_mut().filter(done).for_each(|a| a.to = Some(r.t));
-                    }
-                    _ => {}
-                }
+            }
+            // With each of the couriers that were called the dispatcher has a conversation of its own.
+            Event::Conversation { agent, state, over, .. } if agent.starts_with("dispatcher") => {
+                let open = c.called.entry(agent.clone()).or_default();
+                *open += i64::from(state == "called") - i64::from(*over);
             }
             Event::Conversation { agent, conversation_id, over, .. } => {
                 let key = (agent.clone(), conversation_id.clone());
@@ -101,9 +93,18 @@ fn course(records: &[Record]) -> Course {
                 let of = |a: &&mut Assignment| a.courier == *agent && a.to.is_none();
                 c.assignments.iter_mut().filter(of).for_each(|a| a.to = Some(r.t));
             }
+            Event::State { agent, state, registers, .. } if state == "job" => {
+                let of = |a: &&mut Assignment| a.courier == *agent && a.to.is_none();
+                c.assignments.iter_mut().filter(of).for_each(|a| a.to = Some(r.t));
+                if registers[0] == 0.0 {
+                    let (parcel, courier) = (registers[1] as u32, agent.clone());
+                    c.assignments.push(Assignment { parcel, courier, from: r.t, to: None });
+                }
+            }
             Event::Reading { robot, sensor: 2, registers, .. } => {
                 c.held.insert(*robot, (registers[0] == 0.0).then_some(registers[1] as u32));
             }
+            Event::Mover { name, pose } => _ = c.parcels.insert(name.clone(), pose[1]),
             Event::Reading { robot, sensor: 1, registers, .. } => _ = c.charge.insert(*robot, registers[0]),
             _ => {}
         }
@@ -130,26 +131,25 @@ fn judge(test: &str, seed: u64) -> Vec<String> {
         wrong.push(format!("two grippers hold one parcel: {held:?}"));
     }
     // What can be delivered is delivered: all but what a dead robot holds, as long as anybody can drive.
-    let metric = |name: &str| report.metrics.get(name).copied().flatten().unwrap_or(-1.0);
     let dead_hands =
         c.dead.keys().filter_map(|a| c.robots.get(a)).filter(|r| c.held.get(r).copied().flatten().is_some());
     let impossible = dead_hands.count() as f64;
     let live = c.robots.iter().filter(|(a, _)| !c.dead.contains_key(*a)).map(|(_, r)| reach(&c, *r));
     let farthest = live.fold(0.0, f64::max);
     // The longest trip there is: from one corner to a parcel and on to its dock.
-    if farthest > 25.0 && metric("delivered") + impossible < 6.0 {
+    // A receipt may be lost with the courier that gave it: the ledger knows less than the docks.
+    let free = |name: &str| !held.iter().any(|n| name == format!("box[{n}]"));
+    let at_docks = c.parcels.iter().filter(|(name, y)| **y < 2.5 && free(name)).count() as f64;
+    if farthest > 25.0 && at_docks + impossible < 6.0 {
         wrong.push(format!(
-            "{} delivered, {impossible} in dead hands, {} given up, {farthest:.1} m of battery left",
-            metric("delivered"),
-            metric("given_up")
+            "{at_docks} delivered, {impossible} in dead hands, {farthest:.1} m of battery left: {:?}",
+            c.parcels
         ));
     }
     // No parcel is assigned to two live robots for longer than one reply_by.
     for (i, a) in c.assignments.iter().enumerate() {
         for b in c.assignments[..i].iter().filter(|b| b.parcel == a.parcel && b.courier != a.courier) {
-            let end = |x: &Assignment| {
-                x.to.map_or(report.sim_time_s, |t| t.seconds()).min(x.from.seconds() + REPLY_BY)
-            };
+            let end = |x: &Assignment| x.to.map_or(report.sim_time_s, |t| t.seconds());
             let both = end(a).min(end(b)) - a.from.seconds().max(b.from.seconds());
             if both > REPLY_BY {
                 wrong.push(format!(
@@ -158,6 +158,10 @@ fn judge(test: &str, seed: u64) -> Vec<String> {
                 ));
             }
         }
+    }
+    let called: i64 = c.called.iter().filter(|(a, _)| !c.dead.contains_key(*a)).map(|(_, n)| n).sum();
+    if called != 0 {
+        wrong.push(format!("{called} conversations of dispatchers are not over"));
     }
     if !c.open.is_empty() {
         wrong.push(format!("not over: {:?}", c.open));
@@ -183,34 +187,4 @@ fn what_is_possible_is_delivered_when_a_courier_dies() {
 #[test]
 fn what_is_possible_is_delivered_when_the_announcer_dies() {
     all("the_announcer_dies");
-}
-
-#[test]
-#[ignore = "a look at one run"]
-fn look() {
-    let (records, _) = run("the_announcer_dies", 77);
-    for r in &records {
-        match &r.event {
-            Event::Note { agent, text, .. } => println!("{:.3} {agent} {text}", r.t.seconds()),
-            Event::Life { agent, status, .. } => println!("{:.3} {agent} {status}", r.t.seconds()),
-            Event::Acl { performative, sender, receiver, registers, thread, .. }
-                if performative != "query_ref" =>
-            {
-                println!(
-                    "{:.3} {performative} {sender} {receiver} {registers:?} {:?}",
-                    r.t.seconds(),
-                    thread.conversation_id
-                )
-            }
-            Event::Delivery { agent, dropped: Some(why), topic, .. } if topic != "whereabouts" => {
-                println!("{:.3} DROPPED {agent} {topic} {why}", r.t.seconds())
-            }
-            Event::Reading { robot, sensor: 2, registers, .. }
-                if registers[0] == 0.0 && r.t.0 % 1_000_000_000 == 0 =>
-            {
-                println!("{:.3} r{robot} holds {}", r.t.seconds(), registers[1])
-            }
-            _ => {}
-        }
-    }
 }

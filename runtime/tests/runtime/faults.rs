@@ -83,7 +83,7 @@ fn a_lost_platform_aborts() {
 }
 
 #[test]
-fn raising_each_other_for_ever_is_a_fault() {
+fn raising_each_other_for_ever_ends_the_agent() {
     let ran = run(r#"
 edition 1
 mission m {
@@ -101,12 +101,11 @@ agent pilot {
   service two on event pong { raise ping }
 }
 "#);
-    assert_eq!(ran.report.outcome, Outcome::Aborted);
-    assert!(
-        ran.report.reason.contains("more than 1000000 activations at one instant"),
-        "{}",
-        ran.report.reason
-    );
+    // The agent is killed, and nobody else harmed: its sub-goal fails, and the run comes to its end.
+    assert_eq!(ran.report.outcome, Outcome::Timeout);
+    let died = |r: &Record| matches!(&r.event, Event::Life { reason, .. } if reason.contains("it floods"));
+    assert_eq!(ran.records.iter().filter(|r| died(r)).count(), 1);
+    assert_eq!(ran.report.goals[0].status, "failed");
 }
 
 /// A disk that is full after some records.
