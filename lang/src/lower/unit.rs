@@ -142,10 +142,15 @@ impl<'a> Checker<'a> {
             );
             return None;
         }
-        let mut local = |n: &str, ty: Type| body.bind(&ast::Ident { name: n.into(), span: what.span }, &ty);
+        // What is settled is said of all together: there is no one sender, and no one conversation.
+        let one = &*what.name != "settled";
+        let mut local = |n: &str, ty: Type| match one {
+            true => body.bind(&ast::Ident { name: n.into(), span: what.span }, &ty),
+            false => body.local(&ty),
+        };
         let sender = local("sender", Type::Agent);
         let thread = local("conversation", Type::Conversation(name.name.clone()));
-        body.thread = Some((i as u32, thread));
+        body.thread = one.then_some((i as u32, thread));
         let event = match &*what.name {
             "timeout" => soifra_graph::Talk::Timeout,
             "settled" => soifra_graph::Talk::Settled,

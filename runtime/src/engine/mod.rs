@@ -9,6 +9,7 @@
 
 mod activate;
 mod actuate;
+mod admit;
 mod batch;
 mod board;
 mod cast;
