@@ -238,6 +238,11 @@ fn human(
     for b in r.robots.iter().filter(|b| b.safe_actions > 0).take(ROBOTS) {
         s += &format!("  {} fell back to its safe action {}\n", b.name, times(b.safe_actions));
     }
+    match r.missed_deadlines {
+        0 => {}
+        1 => s += "  one deadline was missed\n",
+        n => s += &format!("  {n} deadlines were missed\n"),
+    }
     if !r.expectations.is_empty() {
         let rows: Vec<Vec<String>> = r
             .expectations

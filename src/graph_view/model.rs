@@ -179,6 +179,19 @@ impl Builder<'_> {
                 self.link(&id, &unit_id(i, k), agent.events.get(*e as usize).map_or("event", |n| n));
             }
         }
+        for (c, performative) in &r.opens {
+            let talk = self.conversation(*c);
+            self.link(&id, &talk, performative);
+        }
+        if let Trigger::Talk { conversation, what, .. } = &unit.trigger {
+            let talk = self.conversation(*conversation);
+            let what = match what {
+                Talk::Message { performative, .. } => performative.to_string(),
+                Talk::Timeout => "timeout".into(),
+                Talk::Settled => "settled".into(),
+            };
+            self.link(&talk, &id, &what);
+        }
         for (performative, to, content) in &r.tells {
             for (k, l) in self.told(performative, to, content) {
                 self.link(&id, &unit_id(k, l), &format!("{performative} {content}"));
@@ -199,6 +212,18 @@ impl Builder<'_> {
             }
             None => self.thing(Kind::Topic, "?", vec!["?".into()]),
         }
+    }
+
+    fn conversation(&mut self, index: u32) -> String {
+        let (name, protocol) = match self.graph.conversations.get(index as usize) {
+            Some(c) => (c.name.to_string(), c.protocol.to_string()),
+            None => ("?".into(), String::new()),
+        };
+        self.thing(
+            Kind::Topic,
+            &format!("conversation {name}"),
+            vec![format!("conversation {name}"), protocol],
+        )
     }
 
     /// Whether an arbiter of any agent listens to the unit for the actuator it commands by `port`.

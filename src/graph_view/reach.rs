@@ -12,6 +12,8 @@ pub struct Reach {
     pub publishes: BTreeSet<u32>,
     pub raises: BTreeSet<u32>,
     pub waits: BTreeSet<u32>,
+    /// Conversations it opens, with what, and those whose messages it answers.
+    pub opens: BTreeSet<(u32, String)>,
     /// Performative, receiver, record.
     pub tells: BTreeSet<(String, String, String)>,
 }
@@ -89,6 +91,7 @@ impl Reach {
                 self.expr(e);
             }
             StmtKind::Open(o) => {
+                self.opens.insert((o.conversation, o.performative.to_string()));
                 o.content.iter().chain([&o.to]).chain(&o.within).for_each(|e| self.expr(e));
             }
             StmtKind::Reply(r) => r.content.iter().chain([&r.thread]).for_each(|e| self.expr(e)),

@@ -367,6 +367,10 @@ pub enum Govern {
     Fail(String),
     /// A goal of the mission that is pursued on request is wanted.
     Pursue(u32),
+    /// What the agent offers is in the directory from now on.
+    Offer(u32),
+    /// What the agent offers is in the directory no more.
+    Withdraw(u32),
 }
 
 /// The first message of a conversation.

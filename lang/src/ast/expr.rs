@@ -70,7 +70,7 @@ pub enum StmtKind {
     Note(String, Option<Expr>),
     /// `raise`
     Raise(Ident),
-    /// `start`, `stop`, `achieve`, `fail`, `pursue`
+    /// `start`, `stop`, `achieve`, `fail`, `pursue`, `offer`, `withdraw`
     Govern(Govern),
     /// `if … else if … else …`
     If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
@@ -176,6 +176,10 @@ pub enum ExprKind {
 /// What an agent decides about its units, and tells the planner-matcher.
 #[derive(Debug, Clone)]
 pub enum Govern {
+    /// `offer NAME`
+    Offer(Ident),
+    /// `withdraw NAME`
+    Withdraw(Ident),
     /// `start UNIT`
     Start(Ident),
     /// `stop UNIT`

@@ -353,6 +353,7 @@ impl<'a> Types<'a> {
             StmtKind::Govern(what) => {
                 let there = match what {
                     Govern::Start(u) | Govern::Stop(u) => (*u as usize) < a.units.len(),
+                    Govern::Offer(o) | Govern::Withdraw(o) => (*o as usize) < a.offers.len(),
                     Govern::Pursue(goal) => (*goal as usize) < self.g.goals.len(),
                     Govern::Achieve | Govern::Fail(_) => true,
                 };

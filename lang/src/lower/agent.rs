@@ -39,8 +39,11 @@ impl<'a> Checker<'a> {
         self.states(a, &mut out);
         for m in &a.members {
             match m {
-                AgentMember::Offers(n, _) if self.conversations.position(&n.name).is_none() => {
-                    self.agent.offered.push(n.name.clone());
+                AgentMember::Offers(n, _) => {
+                    self.agent.offers.push(n.name.clone());
+                    if self.conversations.position(&n.name).is_none() {
+                        self.agent.offered.push(n.name.clone());
+                    }
                 }
                 AgentMember::Unit(u) => self.agent.units.push(u.name.name.clone()),
                 AgentMember::Constant(c) => drop(self.agent.lets.insert(c.name.name.clone(), c)),

@@ -188,6 +188,8 @@ impl Builder {
         let rule = p.as_rule();
         let mut c = Cursor::new(p);
         match rule {
+            Rule::govern_offer => Govern::Offer(self.ident(&mut c)),
+            Rule::govern_withdraw => Govern::Withdraw(self.ident(&mut c)),
             Rule::govern_start => Govern::Start(self.ident(&mut c)),
             Rule::govern_stop => Govern::Stop(self.ident(&mut c)),
             Rule::govern_pursue => Govern::Pursue(self.ident(&mut c)),

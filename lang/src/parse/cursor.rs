@@ -105,6 +105,8 @@ fn is_aside(rule: Rule) -> bool {
             | Rule::K_ACHIEVE
             | Rule::K_FAIL
             | Rule::K_PURSUE
+            | Rule::K_OFFER
+            | Rule::K_WITHDRAW
             | Rule::K_SENSOR
             | Rule::K_ACTUATOR
             | Rule::K_STATE

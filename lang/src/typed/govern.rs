@@ -5,9 +5,11 @@ use crate::{ast, code, decls::unknown};
 use soifra_graph::{Diagnostic, Govern, Name};
 
 impl Checker<'_> {
-    /// `start UNIT`, `stop UNIT`, `achieve`, `fail "why"`, `pursue GOAL`
+    /// `start UNIT`, `stop UNIT`, `achieve`, `fail "why"`, `pursue GOAL`, `offer NAME`, `withdraw NAME`
     pub(super) fn govern(&mut self, what: &ast::Govern) -> Option<Govern> {
         Some(match what {
+            ast::Govern::Offer(name) => Govern::Offer(self.offered(name)?),
+            ast::Govern::Withdraw(name) => Govern::Withdraw(self.offered(name)?),
             ast::Govern::Start(unit) => Govern::Start(self.governed(unit)?),
             ast::Govern::Stop(unit) => Govern::Stop(self.governed(unit)?),
             ast::Govern::Achieve => Govern::Achieve,
@@ -37,6 +39,18 @@ impl Checker<'_> {
             unit.span,
             known.iter().map(|n| &**n),
         );
+        self.report(d);
+        None
+    }
+
+    /// Something that the agent offers.
+    fn offered(&mut self, name: &ast::Ident) -> Option<u32> {
+        if let Some(i) = self.agent.offers.iter().position(|n| *n == name.name) {
+            return Some(i as u32);
+        }
+        let known: Vec<Name> = self.agent.offers.clone();
+        let known = known.iter().map(|n| &**n);
+        let d = unknown(code::UNKNOWN_NAME, "offer of the agent:", &name.name, name.span, known);
         self.report(d);
         None
     }

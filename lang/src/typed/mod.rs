@@ -59,6 +59,8 @@ pub struct AgentScope<'a> {
     pub units: Vec<Name>,
     /// Those of them that are offered to the planner-matcher.
     pub offered: Vec<Name>,
+    /// All that is offered, in order.
+    pub offers: Vec<Name>,
     /// Agent-level `let`s.
     pub lets: BTreeMap<Name, &'a ast::Constant>,
     /// Actions.

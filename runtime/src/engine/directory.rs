@@ -41,6 +41,13 @@ impl Directory {
         }
     }
 
+    /// An agent does not offer a service any more.
+    pub fn withdraw(&mut self, service: &str, agent: u32) {
+        for (_, agents) in self.services.iter_mut().filter(|(n, _)| **n == *service) {
+            agents.retain(|a| *a != agent);
+        }
+    }
+
     /// Those who offer a service.
     pub fn search(&self, service: &str) -> impl Iterator<Item = u32> {
         let found = self.services.iter().find(|(n, _)| **n == *service);

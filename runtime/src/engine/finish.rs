@@ -53,6 +53,7 @@ impl Engine<'_> {
             goals: self.goals(),
             robots: (0..self.scene.bodies().len()).map(|r| self.robot(r)).collect(),
             metrics,
+            missed_deadlines: self.tallies.iter().map(|t| t.misses).sum(),
             faults: self.faults,
         }
     }

@@ -28,6 +28,8 @@ pub struct RunReport {
     pub robots: Vec<RobotReport>,
     /// Metrics; absent when the value is not finite or cannot be computed.
     pub metrics: BTreeMap<String, Option<f64>>,
+    /// Deadlines missed, of all units.
+    pub missed_deadlines: u64,
     /// What went wrong, each with its place in the sources.
     pub faults: Vec<String>,
 }

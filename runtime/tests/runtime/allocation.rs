@@ -434,3 +434,44 @@ mission m {{
     let busy = "refuse planner operator achieve b: capable agents are not available: worker@h serves one";
     assert_eq!(agreed, [busy, "agree planner operator achieve b"]);
 }
+
+#[test]
+fn offers_are_withdrawn_and_made_again() {
+    let ran = run(r#"
+edition 1
+plan p for look { needs watch }
+agent watcher(shy: Bool) {
+  offers watch
+  state n: Int = 0
+  service watch every 10 ms { note "watch" }
+  service mind every 10 ms {
+    set n = n + 1
+    when shy and n == 3 => withdraw watch
+    when shy and n == 7 => offer watch
+  }
+}
+mission m {
+  host north runs watcher(shy: true)
+  host south runs watcher(shy: false)
+  goal a { subgoal look }
+  done when now >= 90 ms
+  within 200 ms
+  fault = kill(agent: "watcher@south", at: 45 ms)
+}
+"#);
+    ran.check_records();
+    let expected = [
+        "0 +watcher@north.watch",
+        "20 -watcher@north.watch",
+        "20 +watcher@south.watch",
+        // South is dead, and north offers it again from 60 ms on.
+        "60 +watcher@north.watch",
+    ];
+    let mut got = services(&ran);
+    got.sort();
+    let mut wanted = expected.map(str::to_string).to_vec();
+    wanted.sort();
+    assert_eq!(got, wanted);
+    assert!(standing(&ran).iter().any(|s| s.starts_with("45 look failed")), "{:?}", standing(&ran));
+    assert!(said(&ran).contains(&"request watcher@north df withdraw watch".to_string()));
+}

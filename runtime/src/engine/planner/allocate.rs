@@ -43,8 +43,16 @@ impl Engine<'_> {
         let planner = &self.planner;
         let holds = |p: u32| planner.holds.get(p as usize).copied().unwrap_or(false);
         let (mut task, means) = self.pool.task(&self.mission.graph, w, &holds);
-        for need in task.ways.iter_mut().flat_map(|way| &mut way.needs) {
-            need.candidates.retain(|a| !planner.refused.contains(&(w, *a)));
+        for way in &mut task.ways {
+            let plan =
+                means.get(way.label as usize).and_then(|m| self.mission.graph.plans.get(m.plan as usize));
+            for (need, (service, _)) in way.needs.iter_mut().zip(plan.map(|p| &p.needs).into_iter().flatten())
+            {
+                need.candidates.retain(|a| {
+                    let withdrawn = |o: u32| planner.withdrawn.contains(&(*a, o));
+                    !planner.refused.contains(&(w, *a)) && !self.offer_of(*a, service).is_some_and(withdrawn)
+                });
+            }
         }
         (task, means)
     }

@@ -19,6 +19,10 @@ pub(in crate::engine) enum Notice {
     Register { instance: u32, offers: Vec<u32>, record: Option<u64> },
     /// To the directory: an agent offers nothing any more.
     Deregister { instance: u32, record: Option<u64> },
+    /// To the directory: an agent offers this, or not, from now on.
+    Modify { instance: u32, offer: u32, present: bool, record: Option<u64> },
+    /// To the planner: the same.
+    Modified { instance: u32, offer: u32, present: bool, record: Option<u64> },
     /// To the directory: who offers this?
     Query { service: Name, record: Option<u64> },
     /// To the planner: those who offer it.
@@ -47,6 +51,8 @@ impl Notice {
         match self {
             Notice::Register { instance, .. }
             | Notice::Deregister { instance, .. }
+            | Notice::Modify { instance, .. }
+            | Notice::Modified { instance, .. }
             | Notice::Appeared { instance, .. }
             | Notice::Gone { instance, .. }
             | Notice::Request { instance, .. }
@@ -77,6 +83,12 @@ impl Engine<'_> {
                     record,
                 );
                 self.notify(Notice::Gone { instance, record });
+            }
+            Notice::Modify { instance, offer, present, record } => {
+                self.modify(instance, offer, present, record);
+            }
+            Notice::Modified { instance, offer, present, record } => {
+                self.modified(instance, offer, present, record);
             }
             Notice::Query { service, record } => {
                 let found: Vec<String> =
@@ -185,6 +197,52 @@ impl Engine<'_> {
             );
             self.notify(Notice::Appeared { instance, record });
         }
+    }
+
+    /// An agent offers something, or not, from now on: its platform tells the directory.
+    fn ask_to_modify(&mut self, instance: u32, offer: u32, present: bool, cause: Option<u64>) {
+        let kind = self.cast.instances[instance as usize].agent;
+        let Some(declared) = self.mission.graph.agents[kind as usize].offers.get(offer as usize) else {
+            return;
+        };
+        let word = if present { "offer" } else { "withdraw" };
+        let content = format!("{word} {}", declared.name);
+        let record = self.trace_planner(instance, "request", DIRECTORY, &content, None, "request", cause);
+        self.notify(Notice::Modify { instance, offer, present, record });
+    }
+
+    fn modify(&mut self, instance: u32, offer: u32, present: bool, record: Option<u64>) {
+        let kind = self.cast.instances[instance as usize].agent;
+        let mission = self.mission;
+        let Some(declared) = mission.graph.agents[kind as usize].offers.get(offer as usize) else { return };
+        if self.lives.is_dead(instance) {
+            return;
+        }
+        match present {
+            true => self.directory.register(&declared.name, instance),
+            false => self.directory.withdraw(&declared.name, instance),
+        }
+        if declared.unit.is_some() && self.plans() {
+            let word = if present { "offered" } else { "withdrawn" };
+            let content = format!("{} {word}", self.agent_name(instance));
+            let reason = Some(declared.name.to_string());
+            let record =
+                self.trace_planner(DIRECTORY, "inform_ref", PLANNER, &content, reason, "subscribe", record);
+            self.notify(Notice::Modified { instance, offer, present, record });
+        }
+    }
+
+    /// The planner allocates without what is withdrawn, and tries again with what is offered.
+    fn modified(&mut self, instance: u32, offer: u32, present: bool, record: Option<u64>) {
+        let concerned: Vec<u32> = if present {
+            self.planner.withdrawn.remove(&(instance, offer));
+            self.current().filter(|(_, t)| t.status == FAILED).map(|(n, _)| n).collect()
+        } else {
+            self.planner.withdrawn.insert((instance, offer));
+            self.planner.serves(instance, offer).collect()
+        };
+        concerned.into_iter().for_each(|number| self.replan(number, record));
+        self.count_goals();
     }
 
     /// An agent is requested: it agrees or refuses by its conditions.
@@ -301,6 +359,8 @@ impl Engine<'_> {
         let info = self.cast.units[unit as usize];
         let who = self.cast.instances[info.instance as usize];
         match what {
+            Govern::Offer(o) => self.ask_to_modify(info.instance, *o, true, cause),
+            Govern::Withdraw(o) => self.ask_to_modify(info.instance, *o, false, cause),
             Govern::Start(u) => self.switch_unit(who.units + u, true, None, cause),
             Govern::Stop(u) => self.switch_unit(who.units + u, false, None, cause),
             Govern::Achieve | Govern::Fail(_) => {

@@ -42,6 +42,8 @@ pub(crate) struct Planner {
     pursued: Vec<bool>,
     /// Who has refused what.
     refused: BTreeSet<(Wanted, u32)>,
+    /// Offers that their agents have withdrawn.
+    withdrawn: BTreeSet<(u32, u32)>,
     /// Questions to the directory that are not answered yet.
     unanswered: u32,
     /// Numbers engagements and conversations.
