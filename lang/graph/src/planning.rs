@@ -62,7 +62,9 @@ impl Pool {
             for b in &group.agents {
                 let number = pool.members.len() as u32;
                 pool.members.push(Member { robot, agent: b.agent });
-                for offer in g.agents.get(b.agent as usize).into_iter().flat_map(|a| &a.offers) {
+                let offers = g.agents.get(b.agent as usize).into_iter().flat_map(|a| &a.offers);
+                // A conversation is no service that a plan could need.
+                for offer in offers.filter(|o| o.unit.is_some()) {
                     let of = pool.on_robots.entry(offer.name.clone()).or_default();
                     of.entry(robot).or_default().push(number);
                 }

@@ -38,13 +38,15 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     out.extend(hall.refusals(&first, &at_start));
     // Later other plans may hold, and the agents of now may be free.
     for goal in goals(true) {
-        let wanted: Vec<Wanted> = match g.goals.get(goal as usize) {
-            Some(x) => (0..x.subgoals.len() as u32)
-                .map(|subgoal| Wanted { goal, subgoal, robot: None })
-                .filter(|w| hall.subgoal(w).agent.is_none())
-                .collect(),
-            None => Vec::new(),
-        };
+        let subgoals = g.goals.get(goal as usize).map_or(0, |x| x.subgoals.len() as u32);
+        let wanted = (0..subgoals).flat_map(|subgoal| {
+            let one = Wanted { goal, subgoal, robot: None };
+            match hall.subgoal(&one) {
+                s if s.agent.is_some() => Vec::new(),
+                s if s.each_robot => (0..bodies).map(|r| Wanted { robot: Some(r), ..one }).collect(),
+                _ => vec![one],
+            }
+        });
         for w in wanted {
             out.extend(hall.refusals(&[w], &|_| true));
         }

@@ -26,6 +26,16 @@ impl<'a> Checker<'a> {
             self.distinct(g.subgoals.iter().map(|s| &s.name));
             let mut subgoals: Vec<SubGoal> =
                 g.subgoals.iter().filter_map(|s| self.subgoal(s, agents)).collect();
+            for s in g.subgoals.iter().filter(|_| g.on_request) {
+                if let Some(by) = &s.agent {
+                    self.report(
+                        Diagnostic::error(code::NO_PLAN, format!("`{}` is pursued from the start", s.name.name))
+                            .at(by.span, "an agent that is named pursues it always")
+                            .at(g.name.span, "on request only")
+                            .hint("leave out `by` and write a plan for it, or leave out `on request`"),
+                    );
+                }
+            }
             for (i, plan) in (0..).zip(&library) {
                 if plan.target.name != g.name.name || plan.subgoals.is_empty() {
                     continue;

@@ -39,9 +39,10 @@ impl<'a> Checker<'a> {
         {
             return self.truth_expr(e, Some(&Type::Bool), false);
         }
-        // Nothing said: done when every goal is achieved.
+        // Nothing said: done when every goal is achieved that nobody has to ask for.
         let span = m.name.span;
-        let all = (0..goals.len() as u32).map(|i| Expr::new(Op::Achieved(i), Vec::new(), Type::Bool, span));
+        let needed = (0..).zip(goals).filter(|(_, g)| !g.on_request).map(|(i, _)| i);
+        let all = needed.map(|i: u32| Expr::new(Op::Achieved(i), Vec::new(), Type::Bool, span));
         Some(
             all.reduce(|a, b| Expr::new(Op::Binary(soifra_graph::Binary::And), vec![a, b], Type::Bool, span))
                 .unwrap_or_else(|| Expr::constant(Value::Bool(false), Type::Bool, span)),

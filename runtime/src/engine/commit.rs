@@ -74,6 +74,10 @@ impl Engine<'_> {
         if finish - release.release > info.deadline {
             self.missed(release.unit, release.release, release.release + info.deadline, record);
         }
+        // It may have died of that.
+        if self.reset.contains(&info.instance) {
+            return;
+        }
         if taken == Time::ZERO {
             self.apply_all(release.unit, items, log, record);
             return;
@@ -272,7 +276,7 @@ impl Engine<'_> {
         } else {
             None
         };
-        let fate = self.troubles.fate(Route::Topic(topic), self.seed, now, sender);
+        let fate = self.troubles.fate(Route::Topic(topic), self.seed, now, sender, 0);
         if fate.lost || fate.unreadable {
             let why = if fate.lost { "lost by a fault" } else { "unreadable by a fault" };
             let agent = self.agent_name(sender);

@@ -68,6 +68,10 @@ impl Goals {
             traced: vec![ACTIVE; mission.graph.goals.len()],
             changed: false,
         };
+        // Nothing is allocated yet, and so nothing is achieved.
+        for (count, goal) in g.allocated.iter_mut().zip(&mission.graph.goals) {
+            count.all = goal.subgoals.iter().filter(|s| s.agent.is_none()).count() as u32;
+        }
         for i in &cast.instances {
             for s in &mission.agents[i.agent as usize].subgoals {
                 g.goals[s.goal as usize].all += 1;

@@ -326,6 +326,8 @@ impl Engine<'_> {
                 trace: self.recorder.on(),
             };
             workers.evaluate(&instant, &mut self.minds, &releases, &mut outcomes);
+            // Who died before is not among those who were evaluated.
+            self.reset.clear();
             for (release, outcome) in releases.iter().zip(&mut outcomes) {
                 if let Some(desk) = workers.desks.get(outcome.log as usize) {
                     self.commit(release, outcome, &desk.log);

@@ -151,15 +151,23 @@ impl Engine<'_> {
         for unit in self.units_of(instance) {
             self.minds.positions[unit as usize] = Position { entered: self.now, ..Position::default() };
             self.lives.on[unit as usize] = self.starts_on(unit);
+            self.tallies[unit as usize].in_a_row = 0;
         }
         let mission = self.mission;
         for (i, s) in mission.agents[who.agent as usize].subgoals.iter().enumerate() {
             self.believe(who.subgoals + i, s.goal, who.robot, &s.name, ACTIVE, record);
         }
-        let conversations =
-            mission.graph.agents[who.agent as usize].offers.iter().filter(|o| o.unit.is_none());
-        conversations.for_each(|o| self.directory.register(&o.name, instance));
+        self.offer_conversations(instance);
+        self.planner_forgets(instance);
         self.ask_to_register(instance, record);
+    }
+
+    /// The conversations that an agent offers are in the directory at once.
+    pub(super) fn offer_conversations(&mut self, instance: u32) {
+        let kind = self.cast.instances[instance as usize].agent;
+        let mission = self.mission;
+        let offers = mission.graph.agents[kind as usize].offers.iter();
+        offers.filter(|o| o.unit.is_none()).for_each(|o| self.directory.register(&o.name, instance));
     }
 
     /// Whether a unit runs when its agent begins.
@@ -207,7 +215,7 @@ impl Engine<'_> {
             self.trace_delivery(unit, &d.letter, Some("it runs no more"));
         }
         let clock = &mut self.clocks[unit as usize];
-        (clock.due, clock.busy) = (None, Time::ZERO);
+        (clock.due, clock.busy, clock.waiting) = (None, Time::ZERO, false);
         if let Some(core) = self.core_of(unit)
             && self.cores[core as usize].drop_unit(unit, self.now)
         {

@@ -80,10 +80,10 @@ impl When {
         Ok(When { from, until, chance, number })
     }
 
-    fn is(&self, seed: u64, now: Time, who: u64) -> bool {
+    fn is(&self, seed: u64, now: Time, who: u64, which: u64) -> bool {
         (self.from..self.until).contains(&now)
             && (self.chance >= 1.0
-                || chance(seed, FAULTS | self.number, who, now.0 as u64, self.number) < self.chance)
+                || chance(seed, FAULTS | self.number, who, now.0 as u64, which) < self.chance)
     }
 }
 
@@ -143,11 +143,11 @@ impl Troubles {
         Ok(out)
     }
 
-    /// What becomes of a message that is sent now.
-    pub fn fate(&self, route: Route, seed: u64, now: Time, sender: u32) -> Fate {
+    /// What becomes of a message that is sent now; `which` tells those of one instant apart.
+    pub fn fate(&self, route: Route, seed: u64, now: Time, sender: u32, which: u64) -> Fate {
         let mut fate = Fate::default();
         for t in self.messages.iter().filter(|t| t.route == route) {
-            if t.when.is(seed, now, u64::from(sender)) {
+            if t.when.is(seed, now, u64::from(sender), which) {
                 match t.kind {
                     Kind::Drop => fate.lost = true,
                     Kind::Delay(by) => fate.late = fate.late + by,
@@ -216,7 +216,7 @@ impl Engine<'_> {
             .sensors
             .iter()
             .filter(here)
-            .filter(|t| t.when.is(seed, now, u64::from(robot)))
+            .filter(|t| t.when.is(seed, now, u64::from(robot), u64::from(sensor)))
             .map(|t| t.bias)
             .collect();
         if struck.is_empty() {

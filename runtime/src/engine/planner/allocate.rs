@@ -18,18 +18,18 @@ use std::collections::{BTreeMap, BTreeSet};
 impl Engine<'_> {
     /// The first allocation, of all that is wanted from the start.
     pub(super) fn allocate(&mut self, cause: Option<u64>) {
-        let graph = &self.mission.graph;
-        let agents = (0..).zip(&self.cast.instances).map(|(i, who)| {
-            let collaborative = graph.agents[who.agent as usize].collaborative;
-            let free = collaborative || !graph.is_bound(who.agent);
-            allocation::Agent { collaborative, available: free && !self.lives.is_dead(i) }
+        // Parameters may have been set while the directory was asked.
+        self.holds_now();
+        let agents = (0..self.cast.instances.len() as u32).map(|i| allocation::Agent {
+            collaborative: self.mission.graph.agents[self.cast.instances[i as usize].agent as usize].collaborative,
+            available: self.is_free(i) && !self.lives.is_dead(i),
         });
         let agents: Vec<_> = agents.collect();
-        let wanted = self.all_wanted();
         let mut tasks = Vec::new();
-        for w in wanted {
-            let (task, means) = self.task(w);
-            self.planner.tasks.push(Task::new(w, means));
+        for (number, w) in (0..).zip(self.all_wanted()) {
+            let (task, means, partial) = self.task(w);
+            self.planner.places.push(number);
+            self.planner.tasks.push(Task::new(w, number, means, partial));
             tasks.push(task);
         }
         let mut matcher = Matcher::new(Problem { agents, tasks });
@@ -38,84 +38,93 @@ impl Engine<'_> {
         self.carry_out(Some(changes), cause);
     }
 
-    /// A sub-goal as a task, without those who refused it.
-    fn task(&self, w: Wanted) -> (allocation::Task, Vec<Means>) {
+    /// Whether no sub-goal has an agent for itself by its name.
+    pub(super) fn is_free(&self, instance: u32) -> bool {
+        let graph = &self.mission.graph;
+        let kind = self.cast.instances[instance as usize].agent;
+        graph.agents[kind as usize].collaborative || !graph.is_bound(kind)
+    }
+
+    /// A sub-goal as a task, without those who refused it or have withdrawn what it needs; and whether anybody
+    /// was left out.
+    pub(super) fn task(&self, w: Wanted) -> (allocation::Task, Vec<Means>, bool) {
         let planner = &self.planner;
         let holds = |p: u32| planner.holds.get(p as usize).copied().unwrap_or(false);
         let (mut task, means) = self.pool.task(&self.mission.graph, w, &holds);
+        let refused: BTreeSet<u32> =
+            planner.refused.iter().filter(|(x, _, _)| *x == w).map(|(_, a, _)| *a).collect();
+        let mut partial = false;
         for way in &mut task.ways {
-            let plan =
-                means.get(way.label as usize).and_then(|m| self.mission.graph.plans.get(m.plan as usize));
-            for (need, (service, _)) in way.needs.iter_mut().zip(plan.map(|p| &p.needs).into_iter().flatten())
-            {
+            let plan = means.get(way.label as usize).and_then(|m| self.mission.graph.plans.get(m.plan as usize));
+            for (need, (service, _)) in way.needs.iter_mut().zip(plan.map(|p| &p.needs).into_iter().flatten()) {
+                let before = need.candidates.len();
                 need.candidates.retain(|a| {
                     let withdrawn = |o: u32| planner.withdrawn.contains(&(*a, o));
-                    !planner.refused.contains(&(w, *a)) && !self.offer_of(*a, service).is_some_and(withdrawn)
+                    !refused.contains(a) && !self.offer_of(*a, service).is_some_and(withdrawn)
                 });
+                partial |= need.candidates.len() < before;
             }
         }
-        (task, means)
+        (task, means, partial)
     }
 
-    /// A sub-goal is wanted from now on; gives its number.
-    pub(super) fn want(&mut self, w: Wanted, cause: Option<u64>) -> u32 {
-        self.want_with(w, BTreeSet::new(), BTreeMap::new(), cause)
-    }
-
-    fn want_with(
-        &mut self,
-        w: Wanted,
-        engaged: BTreeSet<(u32, u32)>,
-        awaiting: BTreeMap<u32, u64>,
-        cause: Option<u64>,
-    ) -> u32 {
-        let (task, means) = self.task(w);
-        let Some(matcher) = &mut self.planner.matcher else { return u32::MAX };
+    /// A sub-goal is wanted from now on.
+    pub(super) fn want(&mut self, w: Wanted, cause: Option<u64>) {
+        let (task, means, partial) = self.task(w);
+        let Some(matcher) = &mut self.planner.matcher else { return };
         let (number, changes) = matcher.task_added(task);
-        self.planner.tasks.push(Task { engaged, awaiting, ..Task::new(w, means) });
+        self.planner.places.push(self.planner.tasks.len() as u32);
+        self.planner.tasks.push(Task::new(w, number, means, partial));
         self.carry_out(Some(changes), cause);
-        number
     }
 
     /// A sub-goal is not wanted any more.
-    pub(super) fn give_up(&mut self, number: u32, cause: Option<u64>) {
-        if let Some(t) = self.planner.tasks.get_mut(number as usize) {
+    pub(super) fn give_up(&mut self, place: u32, cause: Option<u64>) {
+        if let Some(t) = self.planner.tasks.get_mut(place as usize) {
             t.current = false;
         }
-        self.release_task(number, cause);
+        self.release_task(place, cause);
     }
 
     /// The agents of a task are free for others.
-    pub(super) fn release_task(&mut self, number: u32, cause: Option<u64>) {
+    pub(super) fn release_task(&mut self, place: u32, cause: Option<u64>) {
+        let Some(number) = self.planner.tasks.get(place as usize).map(|t| t.number) else { return };
         let changes = self.planner.matcher.as_mut().map(|m| m.task_removed(number));
         self.carry_out(changes, cause);
     }
 
-    /// A task is allocated anew: by other plans, or without those who refused. Who serves it still goes on.
-    pub(super) fn replan(&mut self, number: u32, cause: Option<u64>) {
-        let Some(old) = self.planner.tasks.get_mut(number as usize).filter(|t| t.current) else { return };
-        old.current = false;
-        let wanted = old.wanted;
-        let (engaged, awaiting) = (std::mem::take(&mut old.engaged), std::mem::take(&mut old.awaiting));
-        let next = self.planner.tasks.len() as u32;
-        for (agent, offer) in &engaged {
-            if self.planner.serving.remove(&(*agent, *offer, number)) {
-                self.planner.serving.insert((*agent, *offer, next));
-            }
-        }
-        let changes = self.planner.matcher.as_mut().map(|m| m.task_removed(number));
-        // Others may have wanted what it had: they are told once it is known what it needs now.
-        self.want_with(wanted, engaged, awaiting, cause);
-        self.carry_out(changes, cause);
+    /// A task is planned anew: by other plans, or with others. Who serves it and can go on does.
+    pub(super) fn replan(&mut self, place: u32, cause: Option<u64>) {
+        let Some(old) = self.planner.tasks.get(place as usize).filter(|t| t.current) else { return };
+        let (before, wanted) = (old.number, old.wanted);
+        let (task, means, partial) = self.task(wanted);
+        let Some(matcher) = &mut self.planner.matcher else { return };
+        let removed = matcher.task_removed(before);
+        let (number, added) = matcher.task_added(task);
+        self.planner.places.push(place);
+        let t = &mut self.planner.tasks[place as usize];
+        (t.number, t.means, t.partial) = (number, means, partial);
+        self.carry_out(Some(removed), cause);
+        self.carry_out(Some(added), cause);
+    }
+
+    /// Tasks that nobody serves and that somebody was left out of are planned once more.
+    pub(super) fn reconsider(&mut self, cause: Option<u64>) {
+        let open = |t: &Task| t.status == FAILED && t.partial;
+        let places: Vec<u32> = self.current().filter(|(_, t)| open(t)).map(|(p, _)| p).collect();
+        places.into_iter().for_each(|p| self.replan(p, cause));
     }
 
     /// Requests and dismisses agents as the allocation has changed.
     pub(super) fn carry_out(&mut self, changes: Option<Changes>, cause: Option<u64>) {
         for change in changes.into_iter().flat_map(|c| c.tasks) {
-            let number = change.task;
-            let Some(t) = self.planner.tasks.get(number as usize) else { continue };
+            let Some(&number) = self.planner.places.get(change.task as usize) else { continue };
+            // What was planned before is told by what is planned now.
+            let Some(t) = self.planner.tasks.get(number as usize).filter(|t| t.number == change.task) else {
+                continue;
+            };
             // A later change of the same task may have been carried out before.
-            let outcome = self.planner.matcher.as_ref().map(|m| m.outcome(number).clone());
+            let outcome = self.planner.matcher.as_ref().map(|m| m.outcome(change.task).clone());
             let wanted: BTreeSet<(u32, u32)> = match outcome.as_ref().and_then(Outcome::choice) {
                 Some(choice) => {
                     let means = t.means.get(choice.label as usize);
@@ -179,43 +188,40 @@ impl Engine<'_> {
     }
 
     /// Why a task is not served.
-    pub(super) fn why_refused(&self, number: u32) -> Option<String> {
-        let matcher = self.planner.matcher.as_ref()?;
-        let t = self.planner.tasks.get(number as usize)?;
+    pub(super) fn why_refused(&self, place: u32) -> Option<String> {
+        let t = self.planner.tasks.get(place as usize)?;
+        self.why(self.planner.matcher.as_ref()?, t.number, &t.means)
+    }
+
+    /// Why a matcher does not serve one of its tasks.
+    pub(super) fn why(&self, matcher: &Matcher, number: u32, means: &[Means]) -> Option<String> {
         let graph = &self.mission.graph;
-        let names =
-            |agents: &[u32]| agents.iter().map(|a| self.agent_name(*a)).collect::<Vec<_>>().join(", ");
+        let names = |agents: &[u32]| agents.iter().map(|a| self.agent_name(*a)).collect::<Vec<_>>().join(", ");
         match matcher.outcome(number) {
             Outcome::Refused(Refusal::NoPlan) => Some("no plan".into()),
             Outcome::Refused(Refusal::NoCapable { needs }) => {
-                let lacks = t.means.iter().zip(needs).find_map(|(m, n)| {
+                let lacks = means.iter().zip(needs).find_map(|(m, n)| {
                     let plan = graph.plans.get(m.plan as usize)?;
                     Some(plan.needs.get(*n as usize)?.0.clone())
                 });
                 Some(match lacks {
-                    Some(service) => {
-                        format!("no capable agent: nobody offers {service}, or all have refused")
-                    }
+                    Some(service) => format!("no capable agent: nobody offers {service}, or all have refused"),
                     None => "no capable agent".into(),
                 })
             }
             Outcome::Refused(Refusal::NotAvailable { tasks, agents, unavailable }) => {
-                let rivals: Vec<String> = tasks
-                    .iter()
-                    .filter(|n| **n != number)
-                    .filter_map(|n| self.planner.tasks.get(*n as usize))
-                    .map(|t| self.subgoal_name(t.wanted))
-                    .collect();
+                let name = |n: &u32| {
+                    let place = self.planner.places.get(*n as usize)?;
+                    Some(self.subgoal_name(self.planner.tasks.get(*place as usize)?.wanted))
+                };
+                let rivals: Vec<String> = tasks.iter().filter(|n| **n != number).filter_map(name).collect();
                 let dead: Vec<u32> = unavailable.iter().copied().filter(|a| self.lives.is_dead(*a)).collect();
                 Some(match (rivals.is_empty(), dead.is_empty()) {
                     (true, false) => format!("no agent: {} dead", names(&dead)),
                     (true, true) => format!("capable agents are not available: {}", names(unavailable)),
                     (false, _) => {
-                        format!(
-                            "capable agents are not available: {} serves {}",
-                            names(agents),
-                            rivals.join(", ")
-                        )
+                        let rivals = rivals.join(", ");
+                        format!("capable agents are not available: {} serves {rivals}", names(agents))
                     }
                 })
             }
@@ -259,6 +265,11 @@ impl Engine<'_> {
         names.collect::<Vec<_>>().join(", ")
     }
 
+    /// An agent begins anew: what it had withdrawn it offers again.
+    pub(in crate::engine) fn planner_forgets(&mut self, instance: u32) {
+        self.planner.withdrawn.retain(|(a, _)| *a != instance);
+    }
+
     /// An agent that has died serves nothing; its platform tells the directory.
     pub(in crate::engine) fn agent_gone(&mut self, instance: u32, cause: Option<u64>) {
         self.planner.serving.retain(|(a, _, _)| *a != instance);
@@ -276,10 +287,12 @@ impl Engine<'_> {
 }
 
 impl Task {
-    fn new(wanted: Wanted, means: Vec<Means>) -> Task {
+    fn new(wanted: Wanted, number: u32, means: Vec<Means>, partial: bool) -> Task {
         Task {
             wanted,
+            number,
             means,
+            partial,
             status: ACTIVE,
             current: true,
             engaged: BTreeSet::new(),

@@ -72,6 +72,10 @@ impl Engine<'_> {
             Notice::Register { instance, offers, record } => self.register(instance, &offers, record),
             Notice::Deregister { instance, record } => {
                 self.directory.deregister(instance);
+                if !self.lives.is_dead(instance) {
+                    // It has begun anew in the meantime.
+                    self.offer_conversations(instance);
+                }
                 let content = self.agent_name(instance);
                 let record = self.trace_planner(
                     DIRECTORY,
@@ -112,16 +116,30 @@ impl Engine<'_> {
                 }
             }
             Notice::Appeared { instance, record } => {
-                let changes = self.planner.matcher.as_mut().map(|m| m.agent_returned(instance));
-                self.carry_out(changes, record);
+                if self.is_free(instance) && !self.lives.is_dead(instance) {
+                    let changes = self.planner.matcher.as_mut().map(|m| m.agent_returned(instance));
+                    self.carry_out(changes, record);
+                    self.reconsider(record);
+                }
             }
             Notice::Gone { instance, record } => {
+                // One that has begun anew may have been requested before that was known.
+                let serving: Vec<(u32, u32, u32)> = self
+                    .planner
+                    .serving
+                    .range((instance, 0, 0)..=(instance, u32::MAX, u32::MAX))
+                    .copied()
+                    .collect();
+                for (_, offer, task) in serving {
+                    self.dismissed(instance, task, &[offer], record);
+                }
                 for t in &mut self.planner.tasks {
                     t.engaged.retain(|(a, _)| *a != instance);
                     t.awaiting.remove(&instance);
                 }
                 let changes = self.planner.matcher.as_mut().map(|m| m.agent_lost(instance));
                 self.carry_out(changes, record);
+                self.reconsider(record);
             }
             Notice::Request { instance, task, offers, ticket, record } => {
                 self.asked(instance, task, &offers, ticket, record);
@@ -148,10 +166,11 @@ impl Engine<'_> {
             }
             Notice::Post { goal, name, from, record } => self.posted(goal, &name, from, record),
             Notice::Again { wanted } => {
-                self.planner.refused.retain(|(w, _)| *w != wanted);
+                let now = self.now;
+                self.planner.refused.retain(|(w, _, until)| *w != wanted || *until > now);
                 let open = self.current().find(|(_, t)| t.wanted == wanted && t.status == FAILED);
-                if let Some(number) = open.map(|(n, _)| n) {
-                    self.replan(number, None);
+                if let Some(place) = open.map(|(p, _)| p) {
+                    self.replan(place, None);
                     self.count_goals();
                 }
             }
@@ -248,6 +267,10 @@ impl Engine<'_> {
     /// An agent is requested: it agrees or refuses by its conditions.
     fn asked(&mut self, instance: u32, task: u32, offers: &[u32], ticket: u64, record: Option<u64>) {
         let Some(known) = self.planner.tasks.get(task as usize) else { return };
+        // A request that has been taken back on its way is not answered.
+        if known.awaiting.get(&instance) != Some(&ticket) {
+            return;
+        }
         let subgoal = self.subgoal_name(known.wanted);
         let refusal = match self.lives.is_dead(instance) {
             true => Some("it is dead".to_string()),
@@ -349,7 +372,7 @@ impl Engine<'_> {
     /// An agent will not serve a task: it is not asked for it any more, for a while.
     fn refuse(&mut self, task: u32, instance: u32, record: Option<u64>) {
         let Some(wanted) = self.planner.tasks.get(task as usize).map(|t| t.wanted) else { return };
-        self.planner.refused.insert((wanted, instance));
+        self.planner.refused.insert((wanted, instance, self.now + AGAIN));
         self.queue.put(self.now + AGAIN, Scheduled::Notice(Box::new(Notice::Again { wanted })));
         self.replan(task, record);
     }
@@ -415,34 +438,16 @@ impl Engine<'_> {
     }
 
     fn posted(&mut self, goal: Option<u32>, name: &str, from: Option<u32>, record: Option<u64>) {
-        let mut refusal = None;
-        let pursued = goal.is_some_and(|g| self.planner.pursued[g as usize]);
-        match goal {
-            None => refusal = Some(format!("no plan: there is no goal {name}")),
-            Some(_) if pursued => refusal = Some("it is pursued".to_string()),
-            Some(goal) => {
-                self.planner.pursued[goal as usize] = true;
-                let old: Vec<u32> =
-                    self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(n, _)| n).collect();
-                old.into_iter().for_each(|n| self.give_up(n, record));
-                let wanted: Vec<Wanted> = self.all_wanted().into_iter().filter(|w| w.goal == goal).collect();
-                if wanted.is_empty() {
-                    refusal = Some(format!("no plan for {name} holds"));
-                }
-                for w in wanted {
-                    let number = self.want(w, record);
-                    refusal = refusal.or_else(|| self.why_refused(number));
-                }
-                if refusal.is_some() {
-                    // What cannot be served as a whole is not begun.
-                    self.planner.pursued[goal as usize] = false;
-                    let begun: Vec<u32> =
-                        self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(n, _)| n).collect();
-                    begun.into_iter().for_each(|n| self.give_up(n, record));
-                }
-                self.count_goals();
-            }
+        if self.planner.matcher.is_none() && self.plans() {
+            // The directory has not answered yet.
+            self.notify(Notice::Post { goal, name: name.into(), from, record });
+            return;
         }
+        let refusal = match goal.and_then(|g| Some((g, *self.planner.pursued.get(g as usize)?))) {
+            None => Some(format!("no plan: there is no goal {name}")),
+            Some((_, true)) => Some("it is pursued".to_string()),
+            Some((goal, false)) => self.pursue(goal, name, record),
+        };
         let performative = if refusal.is_some() { "refuse" } else { "agree" };
         let content = format!("achieve {name}");
         match from {
@@ -453,5 +458,28 @@ impl Engine<'_> {
                 self.trace_planner(PLANNER, performative, "operator", &content, refusal, "request", record)
             }
         };
+    }
+
+    /// A goal is pursued from now on, unless its sub-goals cannot be served as a whole: why not.
+    fn pursue(&mut self, goal: u32, name: &str, record: Option<u64>) -> Option<String> {
+        self.planner.pursued[goal as usize] = true;
+        let wanted: Vec<Wanted> = self.all_wanted().into_iter().filter(|w| w.goal == goal).collect();
+        // Tried on a copy, so that nobody is disturbed for what is not to be.
+        let mut trial = self.planner.matcher.clone()?;
+        let mut refusal = wanted.is_empty().then(|| format!("no plan for {name} holds"));
+        for w in &wanted {
+            let (task, means, _) = self.task(*w);
+            let (number, _) = trial.task_added(task);
+            refusal = refusal.or_else(|| self.why(&trial, number, &means));
+        }
+        if refusal.is_some() {
+            self.planner.pursued[goal as usize] = false;
+            return refusal;
+        }
+        let old: Vec<u32> = self.current().filter(|(_, t)| t.wanted.goal == goal).map(|(p, _)| p).collect();
+        old.into_iter().for_each(|p| self.give_up(p, record));
+        wanted.into_iter().for_each(|w| self.want(w, record));
+        self.count_goals();
+        None
     }
 }

@@ -34,21 +34,23 @@ const AGAIN: Time = Time(1_000_000_000);
 pub(crate) struct Planner {
     /// The allocation; none before the directory has answered.
     matcher: Option<Matcher>,
-    /// By number in the matcher.
+    /// Sub-goals that are or were wanted; each keeps its place, however often it is planned anew.
     tasks: Vec<Task>,
+    /// Place in `tasks` of each number of the matcher.
+    places: Vec<u32>,
     /// Which plans hold.
     holds: Vec<bool>,
     /// Which goals are pursued.
     pursued: Vec<bool>,
-    /// Who has refused what.
-    refused: BTreeSet<(Wanted, u32)>,
+    /// Who has refused what, and until when.
+    refused: BTreeSet<(Wanted, u32, Time)>,
     /// Offers that their agents have withdrawn.
     withdrawn: BTreeSet<(u32, u32)>,
     /// Questions to the directory that are not answered yet.
     unanswered: u32,
     /// Numbers engagements and conversations.
     count: u64,
-    /// Agents, numbers of their offers, and the tasks they are engaged for.
+    /// Agents, numbers of their offers, and the tasks, by place, they are engaged for.
     serving: BTreeSet<(u32, u32, u32)>,
 }
 
@@ -56,6 +58,10 @@ pub(crate) struct Planner {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Task {
     wanted: Wanted,
+    /// Its number in the matcher, a new one each time it is planned.
+    number: u32,
+    /// Whether somebody was left out who had refused.
+    partial: bool,
     /// What the labels of its ways stand for.
     means: Vec<Means>,
     status: u8,
@@ -86,10 +92,12 @@ impl Planner {
     /// Whether it can be the planner of a run of the same mission with so many agents.
     pub fn fits(&self, other: &Planner, pool: &Pool) -> bool {
         let agents = pool.members().len();
-        let tasks = self.matcher.as_ref().map_or(0, |m| m.problem().tasks.len());
+        let numbers = self.matcher.as_ref().map_or(0, |m| m.problem().tasks.len());
         self.holds.len() == other.holds.len()
             && self.pursued.len() == other.pursued.len()
-            && self.tasks.len() == tasks
+            && self.places.len() == numbers
+            && self.places.iter().all(|p| (*p as usize) < self.tasks.len())
+            && self.tasks.iter().all(|t| (t.number as usize) < numbers)
             && self.matcher.as_ref().is_none_or(|m| m.problem().agents.len() == agents)
             && self.tasks.iter().flat_map(|t| &t.engaged).all(|(a, _)| (*a as usize) < agents)
             && self.tasks.iter().flat_map(|t| &t.means).all(|m| (m.plan as usize) < self.holds.len())
@@ -212,6 +220,14 @@ impl Engine<'_> {
                 ACHIEVED => of[1] += 1,
                 ACTIVE => {}
                 _ => of[2] += 1,
+            }
+        }
+        // What nobody has asked for yet is not achieved.
+        for ((count, goal), pursued) in
+            counts.iter_mut().zip(&self.mission.graph.goals).zip(&self.planner.pursued)
+        {
+            if !pursued && goal.subgoals.iter().any(|s| s.agent.is_none()) {
+                count[0] = count[0].max(1 + count[1]);
             }
         }
         self.goals.set_allocated(&counts);

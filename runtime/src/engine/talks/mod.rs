@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 pub(super) struct Branch {
     /// Index of the declaration.
     conversation: u32,
-    /// As in messages: all that one message opened have the same.
+    /// As in messages: all that one message opened have the same. Empty without a trace.
     id: String,
     /// Those that were opened together.
     group: u64,
@@ -114,7 +114,11 @@ impl Engine<'_> {
         let count = self.talks.opened.entry(sender).or_default();
         *count += 1;
         let count = *count;
-        let id = format!("{}/{}/{count}", c.name, self.agent_name(sender));
+        // Only the trace says it.
+        let id = match self.recorder.on() {
+            true => format!("{}/{}/{count}", c.name, self.agent_name(sender)),
+            false => String::new(),
+        };
         let group = self.talks.next;
         let mut waiting = 0;
         for n in to {
@@ -257,7 +261,7 @@ impl Engine<'_> {
             record: record.unwrap_or(0),
             unreadable: false,
         };
-        let fate = self.troubles.fate(Route::Talk(conversation), self.seed, self.now, from);
+        let fate = self.troubles.fate(Route::Talk(conversation), self.seed, self.now, from, number);
         if lost || fate.lost {
             let why = if lost { "lost on the way" } else { "lost by a fault" };
             self.trace_utterance(&utterance, to, Some(why));
