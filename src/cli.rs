@@ -55,7 +55,7 @@ pub struct Mission {
     pub mission: Option<String>,
     /// Let the faults of this test happen; its mission unless `--mission` names one
     #[arg(long, value_name = "NAME")]
-    test: Option<String>,
+    pub test: Option<String>,
     /// Run every robot on this platform profile
     #[arg(long, value_name = "PROFILE")]
     pub platform: Option<String>,

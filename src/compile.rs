@@ -234,3 +234,17 @@ fn expected(ty: &soifra_graph::Type, graph: &Graph) -> String {
         other => format!("a {other}"),
     }
 }
+
+/// The parameters that a test sets, and after them those that the user sets.
+pub fn with_test(
+    tests: &[TestCase],
+    test: Option<&str>,
+    sets: Vec<(String, String)>,
+) -> Vec<(String, String)> {
+    let of_test =
+        tests.iter().find(|t| test == Some(&*t.name)).map(|t| t.sets.as_slice()).unwrap_or_default();
+    let mut all: Vec<(String, String)> = of_test.iter().map(|(n, v)| (n.to_string(), v.clone())).collect();
+    all.retain(|(n, _)| !sets.iter().any(|(m, _)| m == n));
+    all.extend(sets);
+    all
+}

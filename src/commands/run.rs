@@ -91,6 +91,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         sets.retain(|(n, _)| *n != name);
         sets.push((name, value));
     }
+    let sets = compile::with_test(&compiled.tests, a.mission.test.as_deref(), sets);
     let values = compile::settings(&compiled.graph, &sets)?;
     compile::verify_with(&compiled.graph, &values)?;
     let graph_digest = graph_file::digest(&compiled.graph);

@@ -32,6 +32,7 @@ pub fn execute(
     let stop = interrupt::flag();
     let mut missions: BTreeMap<Option<String>, (Mission, String)> = BTreeMap::new();
     let cases = plan.cases();
+    let mut tests = Vec::new();
     let mut values: Vec<Vec<(usize, Value)>> = Vec::new();
     for case in &cases {
         if !missions.contains_key(&case.platform) {
@@ -41,10 +42,12 @@ pub fn execute(
                 compiled.findings.print();
             }
             let digest = graph_file::digest(&compiled.graph);
+            tests = compiled.tests;
             missions.insert(case.platform.clone(), (run::load(compiled.graph)?, digest));
         }
         let graph = missions[&case.platform].0.graph();
-        let set = compile::settings(graph, &case.set)?;
+        let set = compile::with_test(&tests, plan.test.as_deref(), case.set.clone());
+        let set = compile::settings(graph, &set)?;
         compile::verify_with(graph, &set)?;
         values.push(set);
     }

@@ -29,10 +29,13 @@ impl<'a> Checker<'a> {
             for s in g.subgoals.iter().filter(|_| g.on_request) {
                 if let Some(by) = &s.agent {
                     self.report(
-                        Diagnostic::error(code::NO_PLAN, format!("`{}` is pursued from the start", s.name.name))
-                            .at(by.span, "an agent that is named pursues it always")
-                            .at(g.name.span, "on request only")
-                            .hint("leave out `by` and write a plan for it, or leave out `on request`"),
+                        Diagnostic::error(
+                            code::NO_PLAN,
+                            format!("`{}` is pursued from the start", s.name.name),
+                        )
+                        .at(by.span, "an agent that is named pursues it always")
+                        .at(g.name.span, "on request only")
+                        .hint("leave out `by` and write a plan for it, or leave out `on request`"),
                     );
                 }
             }

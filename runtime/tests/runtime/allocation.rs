@@ -229,8 +229,8 @@ fn an_agent_that_refuses_is_not_asked_for_a_while() {
     let ran = guarded("", "when strength > 3", "");
     let refused = said(&ran).into_iter().filter(|s| s.starts_with("refuse")).collect::<Vec<_>>();
     let expected = [
-        "refuse watcher@north planner look: not strength > 3",
-        "refuse watcher@south planner look: not strength > 3",
+        "refuse watcher@north planner look: it does not hold: strength > 3",
+        "refuse watcher@south planner look: it does not hold: strength > 3",
     ];
     assert_eq!(refused, expected);
     assert_eq!(services(&ran), ["0 +listener@east.listen"]);

@@ -8,6 +8,7 @@ mod determinism;
 mod expectations;
 mod faults;
 mod machines;
+mod mended;
 mod operator;
 mod plans;
 mod replay;

@@ -21,7 +21,8 @@ impl Engine<'_> {
         // Parameters may have been set while the directory was asked.
         self.holds_now();
         let agents = (0..self.cast.instances.len() as u32).map(|i| allocation::Agent {
-            collaborative: self.mission.graph.agents[self.cast.instances[i as usize].agent as usize].collaborative,
+            collaborative: self.mission.graph.agents[self.cast.instances[i as usize].agent as usize]
+                .collaborative,
             available: self.is_free(i) && !self.lives.is_dead(i),
         });
         let agents: Vec<_> = agents.collect();
@@ -55,8 +56,10 @@ impl Engine<'_> {
             planner.refused.iter().filter(|(x, _, _)| *x == w).map(|(_, a, _)| *a).collect();
         let mut partial = false;
         for way in &mut task.ways {
-            let plan = means.get(way.label as usize).and_then(|m| self.mission.graph.plans.get(m.plan as usize));
-            for (need, (service, _)) in way.needs.iter_mut().zip(plan.map(|p| &p.needs).into_iter().flatten()) {
+            let plan =
+                means.get(way.label as usize).and_then(|m| self.mission.graph.plans.get(m.plan as usize));
+            for (need, (service, _)) in way.needs.iter_mut().zip(plan.map(|p| &p.needs).into_iter().flatten())
+            {
                 let before = need.candidates.len();
                 need.candidates.retain(|a| {
                     let withdrawn = |o: u32| planner.withdrawn.contains(&(*a, o));
@@ -196,7 +199,8 @@ impl Engine<'_> {
     /// Why a matcher does not serve one of its tasks.
     pub(super) fn why(&self, matcher: &Matcher, number: u32, means: &[Means]) -> Option<String> {
         let graph = &self.mission.graph;
-        let names = |agents: &[u32]| agents.iter().map(|a| self.agent_name(*a)).collect::<Vec<_>>().join(", ");
+        let names =
+            |agents: &[u32]| agents.iter().map(|a| self.agent_name(*a)).collect::<Vec<_>>().join(", ");
         match matcher.outcome(number) {
             Outcome::Refused(Refusal::NoPlan) => Some("no plan".into()),
             Outcome::Refused(Refusal::NoCapable { needs }) => {
@@ -205,7 +209,9 @@ impl Engine<'_> {
                     Some(plan.needs.get(*n as usize)?.0.clone())
                 });
                 Some(match lacks {
-                    Some(service) => format!("no capable agent: nobody offers {service}, or all have refused"),
+                    Some(service) => {
+                        format!("no capable agent: nobody offers {service}, or all have refused")
+                    }
                     None => "no capable agent".into(),
                 })
             }

@@ -318,7 +318,8 @@ impl Engine<'_> {
                 Ok(()) if holds => {}
                 Ok(()) => {
                     let written = declared.when.as_ref().map_or("", |e| mission.written(e.span));
-                    return Some(format!("not {}", written.split_whitespace().collect::<Vec<_>>().join(" ")));
+                    let written = written.split_whitespace().collect::<Vec<_>>().join(" ");
+                    return Some(format!("it does not hold: {written}"));
                 }
                 Err(fault) => return Some(fault.to_string()),
             }

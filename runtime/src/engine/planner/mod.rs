@@ -222,12 +222,15 @@ impl Engine<'_> {
                 _ => of[2] += 1,
             }
         }
-        // What nobody has asked for yet is not achieved.
-        for ((count, goal), pursued) in
-            counts.iter_mut().zip(&self.mission.graph.goals).zip(&self.planner.pursued)
-        {
-            if !pursued && goal.subgoals.iter().any(|s| s.agent.is_none()) {
-                count[0] = count[0].max(1 + count[1]);
+        let graph = &self.mission.graph;
+        for ((count, goal), pursued) in counts.iter_mut().zip(&graph.goals).zip(&mut self.planner.pursued) {
+            let allocated = goal.subgoals.iter().any(|s| s.agent.is_none());
+            match count[0] {
+                // What nobody has asked for yet is not achieved.
+                0 if allocated => count[0] = 1,
+                // What has been achieved can be asked for again.
+                n if goal.on_request && n == count[1] => *pursued = false,
+                _ => {}
             }
         }
         self.goals.set_allocated(&counts);
