@@ -69,10 +69,8 @@ fn course(records: &[Record]) -> Course {
     let mut c = Course::default();
     for r in records {
         match &r.event {
-            Event::Acl { sender, robot, .. } => {
-                if sender.starts_with("courier") {
-                    c.robots.insert(sender.clone(), *robot);
-                }
+            Event::Acl { sender, robot, .. } if sender.starts_with("courier") => {
+                c.robots.insert(sender.clone(), *robot);
             }
             // With each of the couriers that were called the dispatcher has a conversation of its own.
             Event::Conversation { agent, state, over, .. } if agent.starts_with("dispatcher") => {
