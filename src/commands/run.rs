@@ -134,7 +134,8 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
         exit = exit.max(Exit::Aborted);
     }
     for fault in &report.faults {
-        output::note(&format!("fault: {fault}"));
+        let often = if fault.times > 1 { format!(", {} times", fault.times) } else { String::new() };
+        output::note(&format!("fault at {} s{often}: {}", figure(Some(fault.at_s)), fault.text));
     }
     match a.format {
         Format::Human => output::print(&human(&report, &sets, trace.as_ref(), lateness.as_ref()))?,
@@ -267,7 +268,9 @@ fn human(
     if !r.goals.is_empty() {
         let rows: Vec<Vec<String>> =
             r.goals.iter().map(|g| vec![g.name.clone(), g.status.to_string()]).collect();
+        let reasons = r.goals.iter().filter_map(|g| Some(format!("  {}: {}\n", g.name, g.reason.as_ref()?)));
         s += &format!("\n{}", table(&["goal", "status"], &rows));
+        s.extend(reasons);
     }
     if !r.metrics.is_empty() {
         let rows: Vec<Vec<String>> = r.metrics.iter().map(|(n, v)| vec![n.clone(), figure(*v)]).collect();

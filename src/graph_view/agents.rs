@@ -39,7 +39,10 @@ pub fn view(graph: &Graph) -> View {
                 (0..).zip(&graph.plans).filter(|(_, p)| p.target == s.name && !p.needs.is_empty())
             {
                 let needs: Vec<&str> = plan.needs.iter().map(|(n, _)| &**n).collect();
-                let lines = vec![format!("plan {}", plan.name), format!("needs {}", needs.join(", "))];
+                let mut lines = vec![format!("plan {}", plan.name), format!("needs {}", needs.join(", "))];
+                lines.extend(
+                    plan.when.as_ref().map(|w| format!("when {}", b.text(w.span, "its condition holds"))),
+                );
                 let id = b.thing(Kind::Plan, &plan.name, lines);
                 b.link(&sub, &id, "");
                 for (service, _) in &plan.needs {
@@ -62,6 +65,15 @@ pub fn view(graph: &Graph) -> View {
                         }
                     }
                 }
+            }
+        }
+    }
+    // Those that no sub-goal leads to serve the others.
+    for a in 0..graph.agents.len() as u32 {
+        for (name, robot) in running(graph, a) {
+            if !b.things.contains_key(&(Kind::Agent, name.clone())) {
+                let agent = agent(&mut b, graph, a, &name, robot);
+                b.link(&mission, &agent, "serves no sub-goal");
             }
         }
     }

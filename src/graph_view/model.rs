@@ -314,7 +314,7 @@ impl Builder<'_> {
     }
 
     /// The source text of a span, on one line, without the word that introduces it.
-    fn text(&self, at: Span, otherwise: &str) -> String {
+    pub(super) fn text(&self, at: Span, otherwise: &str) -> String {
         let text = self
             .graph
             .sources

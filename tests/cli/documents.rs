@@ -42,6 +42,23 @@ fn found(v: &Value, opaque: &[&str], leave: &[&str]) -> BTreeSet<String> {
     out
 }
 
+const BROKEN: &str = "
+edition 1
+mission broken {
+  host here runs counter
+  goal all { subgoal done by counter achieved when quarter < 0 }
+  within 5 s
+}
+agent counter {
+  state left: Int = 3
+  state quarter: Number = 1
+  service count every 1 s {
+    set left = left - 1
+    set quarter = 1 / left
+  }
+}
+";
+
 #[test]
 fn every_field_of_a_run_is_told() {
     let dir = folder("documents");
@@ -66,6 +83,10 @@ fn every_field_of_a_run_is_told() {
     }
     let hop = file(&dir, "hop.soi", super::realtime::HOP);
     let o = soifra(&["run", &hop, "--realtime", "--trace", "none", "--format", "json"]);
+    seen.extend(found(&json(&o), &["metrics", "params"], &["robots[].final.", "diagnostics["]));
+    // And something that goes wrong.
+    let broken = file(&dir, "broken.soi", BROKEN);
+    let o = soifra(&["run", &broken, "--trace", "none", "--format", "json"]);
     seen.extend(found(&json(&o), &["metrics", "params"], &["robots[].final.", "diagnostics["]));
     assert_eq!(seen, told("run"));
 }

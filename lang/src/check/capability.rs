@@ -12,6 +12,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         }
         complete(p, &mut out);
         driven(p, &mut out);
+        equipped(p, &mut out);
     }
     for r in &g.robots {
         let Some(p) = g.platforms.get(r.platform as usize) else { continue };
@@ -55,6 +56,26 @@ const NEEDS_DRIVE: &[(&str, &str, &str)] = &[
     ("strides", "holonomic", "a stride goes in any direction"),
     ("encoders", "differential", "pulses are counted at two wheels"),
 ];
+
+/// Sensors, what they read, and why: a role of the platform and, unless any will do, its model.
+const NEEDS_PART: &[(&str, &str, &str, &str)] = &[
+    ("charge", "power", "battery", "a charge is that of a battery"),
+    ("holding", "actuator", "gripper", "a gripper holds things, or does not"),
+];
+
+/// Sensors without what they read.
+fn equipped(p: &Platform, out: &mut Vec<Diagnostic>) {
+    for c in p.of_role("sensor") {
+        let Some((model, role, part, why)) = NEEDS_PART.iter().find(|(m, ..)| *c.model == **m) else {
+            continue;
+        };
+        if !p.of_role(role).any(|x| *x.model == **part) {
+            let title = format!("`{model}` of `{}` needs a {part}", p.name);
+            let d = Diagnostic::error(code::INCOMPLETE_PLATFORM, title).at(c.at, *why);
+            out.push(d.hint(format!("add `{role} … = {part}(…)` to the profile, or leave the sensor out")));
+        }
+    }
+}
 
 /// Actuators and sensors that the drive cannot serve.
 fn driven(p: &Platform, out: &mut Vec<Diagnostic>) {

@@ -9,8 +9,8 @@ use crate::{
     },
 };
 use soifra_graph::{
-    Agent, Conversation, Diagnostic, Expr, Graph, Name, Op, Role, Span, Stmt, StmtKind, Talk, Trigger, Unit,
-    Value,
+    Agent, Component, Conversation, Diagnostic, Expr, Graph, Name, Op, Role, Severity, Span, Stmt, StmtKind,
+    Talk, Trigger, Unit, Value,
 };
 
 /// Checks every conversation that agents of robots and hosts have.
@@ -34,7 +34,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         }
         out.extend(of.unheard());
         if sound {
-            out.extend(of.stuck());
+            out.extend(of.stuck(&g.faults));
         }
     }
     out
@@ -283,7 +283,7 @@ impl<'g> Speakers<'g> {
     }
 
     /// Explores what every opener can have with every offerer.
-    fn stuck(&self) -> Vec<Diagnostic> {
+    fn stuck(&self, faults: &[Component]) -> Vec<Diagnostic> {
         let names = Names::new(self.c);
         let number = |name: &str| {
             let e = self.c.channel.args.iter().find(|(n, _)| &**n == name).map(|(_, e)| e);
@@ -292,14 +292,28 @@ impl<'g> Speakers<'g> {
         // What is not known before the run may be anything.
         let lossy = number("loss").is_none_or(|l| l > 0.0);
         let capacity = number("capacity").map_or(1, |c| (c as usize).clamp(1, 16));
-        let queues = Queues { capacity: [capacity; 2], lossy };
+        let mut out = self.stuck_with(&names, Queues { capacity: [capacity; 2], lossy });
+        // What gets stuck only by a declared fault may be what the fault is there to show.
+        if let Some(fault) = faults.iter().find(|f| drops(f, &self.c.name)).filter(|_| !lossy) {
+            for mut d in self.stuck_with(&names, Queues { capacity: [capacity; 2], lossy: true }) {
+                if !out.iter().any(|o| o.code == d.code && o.position() == d.position()) {
+                    d.severity = Severity::Warning;
+                    out.push(d.at(fault.at, "this fault loses messages of it"));
+                }
+            }
+        }
+        out
+    }
+
+    /// As [`Self::stuck`], with such queues between them.
+    fn stuck_with(&self, names: &Names, queues: Queues) -> Vec<Diagnostic> {
         let mut out: Vec<Diagnostic> = Vec::new();
         for a in &self.openers {
             for b in &self.offerers {
                 let parties =
-                    [self.party(&names, a, Role::Initiator), self.party(&names, b, Role::Participant)];
+                    [self.party(names, a, Role::Initiator), self.party(names, b, Role::Participant)];
                 let explored = analysis::explore(&names.protocol, &parties, queues, MOST);
-                for d in self.told(&names, [a, b], &explored) {
+                for d in self.told(names, [a, b], &explored) {
                     if !out.iter().any(|o| o.code == d.code && o.position() == d.position()) {
                         out.push(d);
                     }
@@ -418,6 +432,12 @@ impl<'g> Speakers<'g> {
         }
         out
     }
+}
+
+/// Whether a fault loses messages of a conversation.
+fn drops(fault: &Component, conversation: &str) -> bool {
+    let of = fault.args.iter().find(|(n, _)| &**n == "of").and_then(|(_, e)| e.as_const());
+    *fault.model == *"drop" && matches!(of, Some(Value::Text(t)) if **t == *conversation)
 }
 
 /// Why a side waits.

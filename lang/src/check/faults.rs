@@ -1,7 +1,7 @@
 //! Can the faults that a mission or test declares happen? They name agents, channels, sensors and goals.
 
 use crate::{code, decls::unknown};
-use soifra_graph::{Component, Diagnostic, Expr, Graph, RobotGroup, Value};
+use soifra_graph::{Component, Diagnostic, Dim, Expr, Graph, RobotGroup, Type, TypeTable, Value};
 
 /// Checks every fault.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -39,9 +39,18 @@ fn fault(g: &Graph, f: &Component) -> Option<Diagnostic> {
                 );
             };
             let platform = g.platforms.get(group.platform as usize)?;
-            let known: Vec<&str> = platform.of_role("sensor").map(|c| &*c.name).collect();
-            let what = format!("sensor of `{}`:", platform.name);
-            (!known.contains(&sensor)).then(|| unknown(code::FAULT, &what, sensor, e.span, known))
+            let Some(part) = platform.of_role("sensor").find(|c| &*c.name == sensor) else {
+                let known = platform.of_role("sensor").map(|c| &*c.name);
+                let what = format!("sensor of `{}`:", platform.name);
+                return Some(unknown(code::FAULT, &what, sensor, e.span, known));
+            };
+            let lengths = part.ty.as_ref().is_none_or(|t| has_lengths(t, &g.types));
+            (&*f.model == "bias" && !lengths).then(|| {
+                Diagnostic::error(code::FAULT, format!("`{sensor}` measures no lengths"))
+                    .at(e.span, "has no ranges or positions that could be off")
+                    .at(part.at, "this sensor")
+                    .hint("a bias is for sensors of ranges, distances and poses")
+            })
         }
         "drop" | "delay" | "duplicate" | "corrupt" => {
             let (text, e) = text(f, "of")?;
@@ -52,6 +61,18 @@ fn fault(g: &Graph, f: &Component) -> Option<Diagnostic> {
         }
         // Whoever asks for a goal that is not there is refused; that is what it is for.
         _ => None,
+    }
+}
+
+/// Whether there are distances or positions in a value.
+fn has_lengths(ty: &Type, types: &TypeTable) -> bool {
+    match ty {
+        Type::Quantity(Dim::LENGTH) | Type::Point(_) | Type::Pose(_) => true,
+        Type::Option(inner) | Type::List(inner, _) => has_lengths(inner, types),
+        Type::Record(name) => {
+            types.records.get(name).is_some_and(|r| r.fields.iter().any(|(_, t)| has_lengths(t, types)))
+        }
+        _ => false,
     }
 }
 

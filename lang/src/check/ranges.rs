@@ -26,6 +26,7 @@ enum Must {
 const RULES: &[(&str, Must)] = &[
     ("beams", Must::BePositive),
     ("bearings", Must::BePositive),
+    ("chance", Must::BeAChance),
     ("color", Must::BeAColour),
     ("cone", Must::BeAtMostHalfATurn),
     ("delay", Must::NotBeNegative),
@@ -33,6 +34,7 @@ const RULES: &[(&str, Must)] = &[
     ("false_alarm", Must::BeAChance),
     ("field", Must::AscendWithinATurn),
     ("height", Must::BePositive),
+    ("from", Must::NotBeNegative),
     ("keep_out", Must::NotBeNegative),
     ("lag", Must::NotBeNegative),
     ("latency", Must::NotBeNegative),
@@ -68,7 +70,8 @@ const LARGEST: i64 = 1 << 20;
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
     let mut c = Ranges { known: Constants::new(g), out: Vec::new() };
     let parts = g.world.iter().chain(g.platforms.iter().flat_map(|p| &p.components));
-    for part in parts.chain(g.topics.iter().map(|t| &t.channel)) {
+    let channels = g.topics.iter().map(|t| &t.channel).chain(g.conversations.iter().map(|x| &x.channel));
+    for part in parts.chain(channels).chain(&g.faults) {
         c.component(part);
     }
     for r in g.bodies() {

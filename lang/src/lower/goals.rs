@@ -6,7 +6,7 @@ use crate::{
     decls::unknown,
     typed::{Body, Checker, Place},
 };
-use soifra_graph::{Diagnostic, Goal, LibraryPlan, Name, SubGoal, Type};
+use soifra_graph::{Diagnostic, Goal, LibraryPlan, Name, Severity, SubGoal, Type};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl<'a> Checker<'a> {
@@ -175,13 +175,19 @@ impl<'a> Checker<'a> {
                     .hint("write `subgoal NAME`, and a plan for it"),
             );
         }
+        let members = self.decls.agents.iter().flat_map(|a| &a.members);
+        let offers = members.filter_map(|m| match m {
+            ast::AgentMember::Offers(o, _) => Some(&*o.name),
+            _ => None,
+        });
+        let known: BTreeSet<&str> = offers.collect();
+        let is_served = |o: &ast::LibraryPlan| {
+            o.target.name == p.target.name
+                && !o.needs.is_empty()
+                && o.needs.iter().all(|n| known.contains(&*n.name))
+        };
+        let another = self.decls.plans.iter().any(|(_, o)| is_served(o));
         for n in &p.needs {
-            let members = self.decls.agents.iter().flat_map(|a| &a.members);
-            let offers = members.filter_map(|m| match m {
-                ast::AgentMember::Offers(o, _) => Some(&*o.name),
-                _ => None,
-            });
-            let known: BTreeSet<&str> = offers.collect();
             if !known.contains(&*n.name) {
                 let mut d = unknown(code::NO_CAPABLE, "service", &n.name, n.span, known.iter().copied());
                 d.title = format!("no agent offers `{}`", n.name);
@@ -189,6 +195,10 @@ impl<'a> Checker<'a> {
                 if known.is_empty() {
                     d.hint =
                         Some(format!("write `offers {}` in an agent with a service of that name", n.name));
+                }
+                if another {
+                    // The plan cannot be followed, but its sub-goal can be achieved without it.
+                    d.severity = Severity::Warning;
                 }
                 self.report(d);
             }

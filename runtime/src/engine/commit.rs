@@ -7,6 +7,7 @@ use super::{
     log::{Item, Log},
     post::Letter,
     queue::Scheduled,
+    report::FaultReport,
     troubles::Route,
 };
 use crate::{Event, Time, mission::code::TriggerCode};
@@ -449,9 +450,17 @@ impl Engine<'_> {
             Some(r) => format!("{} of {}: ", agent, r.name),
             None => String::new(),
         };
-        self.faults.push(format!("{who}{text}"));
+        self.note_fault(format!("{who}{text}"));
         if self.aborted.is_none() {
             self.aborted = Some(format!("{who}{text}"));
+        }
+    }
+
+    /// Keeps a fault for the report.
+    pub(super) fn note_fault(&mut self, text: String) {
+        match self.faults.iter_mut().find(|f| f.text == text) {
+            Some(f) => f.times += 1,
+            None => self.faults.push(FaultReport { at_s: self.now.seconds(), text, times: 1 }),
         }
     }
 }

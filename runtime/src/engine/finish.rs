@@ -85,7 +85,11 @@ impl Engine<'_> {
     fn goals(&self) -> Vec<GoalReport> {
         let goals = self.mission.graph.goals.iter().enumerate();
         goals
-            .map(|(g, goal)| GoalReport { name: goal.name.to_string(), status: self.goals.status(g) })
+            .map(|(g, goal)| GoalReport {
+                name: goal.name.to_string(),
+                status: self.goals.status(g),
+                reason: self.unserved(g as u32),
+            })
             .collect()
     }
 

@@ -86,7 +86,7 @@ impl Engine<'_> {
             agent: name,
             text: told,
         });
-        self.faults.push(format!("{agent}: {text}"));
+        self.note_fault(format!("{agent}: {text}"));
         let since = self.now;
         let failures = self.lives.failures.entry(instance).or_default();
         failures.retain(|t| since - *t < within);

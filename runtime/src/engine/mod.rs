@@ -136,7 +136,7 @@ pub struct Engine<'m> {
     contacts: Contacts,
     goals: Goals,
     judge: Judge,
-    faults: Vec<String>,
+    faults: Vec<report::FaultReport>,
     /// Why the run is to be aborted.
     aborted: Option<String>,
     /// What was traced last of each robot and mover.

@@ -73,9 +73,12 @@ impl<'m> Engine<'m> {
         let cause = self.recorder.record(self.now, None, || input.event());
         match &input.operation {
             Operation::Kill { agent } => {
-                if let Some(instance) = self.instance_of(agent) {
-                    self.kill(instance, "killed by the operator", cause);
+                let Some(instance) = self.instance_of(agent) else { return };
+                if self.lives.is_dead(instance) {
+                    let (target, text) = (agent.clone(), "is dead already".to_string());
+                    self.recorder.record(self.now, cause, || Event::Trouble { target, text });
                 }
+                self.kill(instance, "killed by the operator", cause);
             }
             Operation::Set { param, registers } => self.set_param(param, registers, cause),
             Operation::Stop => self.operator.stop = self.operator.stop.or(Some(cause)),

@@ -1,6 +1,6 @@
 //! What a run came to.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The result of a run: the fields of `soifra run --format json` that the runtime knows.
@@ -31,7 +31,18 @@ pub struct RunReport {
     /// Deadlines missed, of all units.
     pub missed_deadlines: u64,
     /// What went wrong, each with its place in the sources.
-    pub faults: Vec<String>,
+    pub faults: Vec<FaultReport>,
+}
+
+/// Something that went wrong.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FaultReport {
+    /// When it did first.
+    pub at_s: f64,
+    /// What, and where in the sources.
+    pub text: String,
+    /// How often.
+    pub times: u32,
 }
 
 /// How a run ended.
@@ -109,6 +120,8 @@ pub struct GoalReport {
     pub name: String,
     /// `active`, `achieved` or `failed`.
     pub status: &'static str,
+    /// Which of its sub-goals have no agents, and why; absent when none.
+    pub reason: Option<String>,
 }
 
 /// A robot at the end.

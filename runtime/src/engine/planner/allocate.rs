@@ -240,6 +240,7 @@ impl Engine<'_> {
     pub(super) fn set_status(&mut self, number: u32, status: u8, reason: Option<String>, cause: Option<u64>) {
         let Some(t) = self.planner.tasks.get_mut(number as usize) else { return };
         let before = std::mem::replace(&mut t.status, status);
+        t.why = reason.clone().filter(|_| status == FAILED);
         let wanted = t.wanted;
         if before != status {
             self.trace_status(wanted, status, reason, cause);
@@ -300,6 +301,7 @@ impl Task {
             means,
             partial,
             status: ACTIVE,
+            why: None,
             current: true,
             engaged: BTreeSet::new(),
             awaiting: BTreeMap::new(),

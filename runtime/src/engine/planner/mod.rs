@@ -65,6 +65,8 @@ struct Task {
     /// What the labels of its ways stand for.
     means: Vec<Means>,
     status: u8,
+    /// Why it has failed.
+    why: Option<String>,
     /// Whether it is still wanted in this form.
     current: bool,
     /// Agents and offers it has, or has asked for.
@@ -208,6 +210,18 @@ impl Engine<'_> {
     /// Tasks that are still wanted.
     fn current(&self) -> impl Iterator<Item = (u32, &Task)> {
         (0..).zip(&self.planner.tasks).filter(|(_, t)| t.current)
+    }
+
+    /// Which sub-goals of a goal nobody serves, and why.
+    pub(super) fn unserved(&self, goal: u32) -> Option<String> {
+        let of_goal = self.current().filter(|(_, t)| t.wanted.goal == goal);
+        let told = of_goal.filter_map(|(_, t)| {
+            let robot = t.wanted.robot.and_then(|r| self.scene.robots.get(r as usize));
+            let of = robot.map_or(String::new(), |r| format!(" of {}", r.name));
+            Some(format!("{}{of}: {}", self.subgoal_name(t.wanted), t.why.as_ref()?))
+        });
+        let all: Vec<String> = told.collect();
+        (!all.is_empty()).then(|| all.join("; "))
     }
 
     /// Tells the goals how their allocated sub-goals stand.
