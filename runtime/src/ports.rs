@@ -111,6 +111,12 @@ pub trait Platform {
     /// Starts the robot's safe action and returns its name.
     fn safe_action(&mut self, now: Time, robot: u32) -> &'static str;
 
+    /// Starts what the robot does when the run is over, and returns its name: the safe action unless it has
+    /// something of its own, such as to land.
+    fn finish(&mut self, now: Time, robot: u32) -> &'static str {
+        self.safe_action(now, robot)
+    }
+
     /// World truth, where there is a simulator that knows it.
     fn truth(&self) -> Option<&dyn WorldTruth>;
 }

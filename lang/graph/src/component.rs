@@ -22,7 +22,7 @@ pub const NAMED_ROLES: &[&str] =
     &["sensor", "actuator", "wall", "obstacle", "region", "mover", "parcel", "material", "topic"];
 /// Roles a platform profile has.
 pub const PLATFORM_ROLES: &[&str] =
-    &["body", "drive", "power", "sensor", "actuator", "safe", "prepare", "finish"];
+    &["body", "drive", "cruise", "power", "sensor", "actuator", "safe", "prepare", "finish"];
 /// Roles a world has.
 pub const WORLD_ROLES: &[&str] = &["bounds", "wall", "obstacle", "region", "mover", "parcel", "material"];
 /// Roles a mission or test has besides those of its world.
@@ -43,6 +43,26 @@ const TABLE: &[(&str, &str, &str)] = &[
         "drive",
         "holonomic(max_speed: Velocity, max_turn: AngularVelocity, lag: Duration = 0 s, error: Distribution<Number> = 0)",
         "Moves in any direction and turns at will; the error is relative, drawn once a motion (a stride, or a twist unlike the last)",
+    ),
+    (
+        "drive",
+        "quadrotor(max_speed: Velocity, max_climb: Velocity, max_turn: AngularVelocity, max_tilt: Angle, attitude_lag: Duration = 80 ms, velocity_lag: Duration = 400 ms, turn_lag: Duration = 150 ms, drag: Frequency = 0.1 Hz, gust: Distribution<Acceleration> = 0)",
+        "Four rotors: it tilts to go somewhere. The attitude is of second order with a natural frequency of 1 / attitude_lag, damped by 0.8; an autopilot holds the commanded speed with a time constant of velocity_lag, and the height; drag is the deceleration by the air for each m/s; a gust is an acceleration along each axis of map, drawn ten times a second",
+    ),
+    (
+        "cruise",
+        "speed(of: Velocity)",
+        "How fast the robot usually goes: `robot.cruise_speed`",
+    ),
+    (
+        "sensor",
+        "imu(period: Duration, latency: Duration = 0 s, rate_noise: Distribution<AngularVelocity> = 0, rate_bias: Distribution<AngularVelocity> = 0, tilt_noise: Distribution<Angle> = 0) -> Imu",
+        "Tilt, and rates about the axes of base_link; noise is drawn for every reading, the bias of each axis once a run",
+    ),
+    (
+        "sensor",
+        "flow_odometry(period: Duration, latency: Duration = 0 s, speed_noise: Distribution<Velocity> = 0, scale_error: Distribution<Number> = 0, turn_noise: Distribution<AngularVelocity> = 0) -> Odometry",
+        "Pose in odom and twist, integrated from the speed over the ground that a camera looking down and a gyroscope tell; starts at the origin. The noise is drawn for every reading, the error of the scale once a run",
     ),
     (
         "sensor",
@@ -110,8 +130,16 @@ const TABLE: &[(&str, &str, &str)] = &[
         "What a full battery holds, what a metre of way takes and what a second takes; an empty one moves no robot. Without `power` a robot never tires",
     ),
     ("safe", "stop()", "Stand still; always possible"),
+    ("safe", "hover()", "Stay where it is, in the air"),
+    ("safe", "land()", "Come down where it is"),
     ("prepare", "stand()", "Nothing to prepare"),
+    (
+        "prepare",
+        "take_off(height: Length)",
+        "Climb to a height over the start; commands count from then on. What flies needs it",
+    ),
     ("finish", "stop()", "Stand still"),
+    ("finish", "land()", "Come down where it is"),
     ("bounds", "rectangle(low: Point<map>, high: Point<map>)", "The ground that pictures show; no wall"),
     (
         "wall",

@@ -61,6 +61,8 @@ pub enum Own {
     Radius,
     /// Body height: `Length`.
     Height,
+    /// Cruise speed of the profile: `Velocity`.
+    CruiseSpeed,
 }
 
 /// World truth about a robot. Readable in `done`, `expect` and `metric` only.

@@ -1,7 +1,8 @@
 //! Has every platform the sensors, actuators and parts that its robots' agents need?
 
+use super::walk;
 use crate::{code, decls::unknown};
-use soifra_graph::{Agent, AgentBinding, Diagnostic, Graph, Platform, Port, RobotGroup, Type};
+use soifra_graph::{Agent, AgentBinding, Diagnostic, Graph, Op, Own, Platform, Port, RobotGroup, Type};
 
 /// Checks every robot against its platform, and every platform by itself.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -13,6 +14,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
         complete(p, &mut out);
         driven(p, &mut out);
         equipped(p, &mut out);
+        airborne(p, &mut out);
     }
     for r in &g.robots {
         let Some(p) = g.platforms.get(r.platform as usize) else { continue };
@@ -23,6 +25,9 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
             }
             for port in &a.actuators {
                 port_on(a, b, r, p, port, "actuator", code::LACKS_ACTUATOR, &mut out);
+            }
+            if !r.host && p.of_role("cruise").next().is_none() {
+                cruises(a, r, p, &mut out);
             }
         }
     }
@@ -74,6 +79,49 @@ fn equipped(p: &Platform, out: &mut Vec<Diagnostic>) {
             let d = Diagnostic::error(code::INCOMPLETE_PLATFORM, title).at(c.at, *why);
             out.push(d.hint(format!("add `{role} … = {part}(…)` to the profile, or leave the sensor out")));
         }
+    }
+}
+
+/// An agent that asks for a cruise speed that the platform does not tell.
+fn cruises(a: &Agent, r: &RobotGroup, p: &Platform, out: &mut Vec<Diagnostic>) {
+    let mut asked = None;
+    walk::agent(a, &mut |e| {
+        if e.op == Op::Own(Own::CruiseSpeed) {
+            asked = asked.or(Some(e.span));
+        }
+    });
+    if let Some(at) = asked {
+        out.push(
+            Diagnostic::error(code::INCOMPLETE_PLATFORM, format!("`{}` has no cruise speed", p.name))
+                .at(at, format!("`{}` needs it", a.name))
+                .at(r.at, format!("`{}` is one", r.name))
+                .hint("add `cruise = speed(50 cm/s)` to the profile, or choose another platform"),
+        );
+    }
+}
+
+/// What only flies, or never does: roles and models.
+const IN_THE_AIR: &[(&str, &str)] =
+    &[("prepare", "take_off"), ("safe", "hover"), ("safe", "land"), ("finish", "land")];
+
+/// A drive that flies takes off; others do not.
+fn airborne(p: &Platform, out: &mut Vec<Diagnostic>) {
+    let Some(drive) = p.of_role("drive").next() else { return };
+    let flies = *drive.model == *"quadrotor";
+    if flies && !p.of_role("prepare").any(|c| *c.model == *"take_off") {
+        out.push(
+            Diagnostic::error(code::INCOMPLETE_PLATFORM, format!("`{}` never takes off", p.name))
+                .at(drive.at, "flies")
+                .hint("add `prepare = take_off(height: 1 m)`"),
+        );
+    }
+    for c in p.components.iter().filter(|c| !flies && IN_THE_AIR.contains(&(&*c.role, &*c.model))) {
+        out.push(
+            Diagnostic::error(code::INCOMPLETE_PLATFORM, format!("`{}` of `{}` needs wings", c.model, p.name))
+                .at(c.at, "only what flies can do this")
+                .at(drive.at, format!("this drive is {}", drive.model))
+                .hint("write `stop()`, or take a drive that flies"),
+        );
     }
 }
 

@@ -32,7 +32,7 @@ fn bodily(g: &Graph, a: &Agent) -> Vec<(Span, &'static str)> {
     };
     let radio = "a topic with a range, which is counted from somewhere";
     walk::agent(a, &mut |e: &Expr| match e.op {
-        Op::Own(Own::Start | Own::Target | Own::Radius | Own::Height) => {
+        Op::Own(Own::Start | Own::Target | Own::Radius | Own::Height | Own::CruiseSpeed) => {
             out.push((e.span, "asks for what only a body has"));
         }
         Op::Heard(t) if ranged(t) => out.push((e.span, radio)),

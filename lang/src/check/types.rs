@@ -429,6 +429,7 @@ impl<'a> Types<'a> {
             Op::Own(Own::Start) => e.ty == Type::Pose(Frame::map()),
             Op::Own(Own::Target) => e.ty == Type::Point(Frame::map()),
             Op::Own(Own::Radius | Own::Height) => quantity(Dim::LENGTH),
+            Op::Own(Own::CruiseSpeed) => quantity(Dim::VELOCITY),
             Op::Truth(Truth::Pose) => e.ty == Type::Pose(Frame::map()),
             Op::Truth(Truth::PathLength) => quantity(Dim::LENGTH),
             Op::Truth(Truth::Collisions) | Op::Run(Run::Collisions) => e.ty == Type::Int,

@@ -8,7 +8,7 @@ use soifra_graph::{
 };
 
 /// What a robot knows of itself.
-const OWN: [&str; 5] = ["index", "start", "target", "radius", "height"];
+const OWN: [&str; 6] = ["index", "start", "target", "radius", "height", "cruise_speed"];
 
 /// Most expression nodes that the constants of a program may be written out to.
 const MAX_WRITTEN_OUT: usize = 4_000_000;
@@ -386,6 +386,7 @@ impl<'a> Checker<'a> {
             "target" => (Own::Target, Type::Point(map())),
             "radius" => (Own::Radius, Type::Quantity(Dim::LENGTH)),
             "height" => (Own::Height, Type::Quantity(Dim::LENGTH)),
+            "cruise_speed" => (Own::CruiseSpeed, Type::Quantity(Dim::VELOCITY)),
             other => {
                 let d = unknown(code::UNKNOWN_FIELD, "fact about a robot", other, field.span, OWN);
                 self.report(d);

@@ -4,7 +4,10 @@
 //! A position is always computed from the start of its piece, never from where somebody last looked. So
 //! neither polling nor the instants of collision checks can change it by a bit.
 
-use super::geometry::{Vec2, turned};
+use super::{
+    flight::{Attitude, Flight, Leg},
+    geometry::{Vec2, turned},
+};
 use soifra_runtime::Time;
 
 /// Constant velocity for a while.
@@ -63,6 +66,13 @@ impl Piece {
             return Piece { velocity, ..Piece::sliding(start, end, from, [0.0; 2], speed) };
         }
         Piece { start, end, at, heading, velocity, turn, path, speed, half: [0.0, 1.0] }
+    }
+
+    /// Moving with a velocity in map, whatever way the body faces, and perhaps turning.
+    pub fn gliding(start: i64, end: i64, from: Place, velocity: Vec2, turn: f64, speed: f64) -> Piece {
+        let Place { at, heading, path } = from;
+        let half = if turn == 0.0 { libm::sincos(0.5 * heading).into() } else { [0.0, 1.0] };
+        Piece { start, end, at, heading, velocity, turn, path, speed, half }
     }
 
     /// Moving without a turn: velocities ahead and to the left, and their norm.
@@ -128,8 +138,10 @@ pub struct Body {
     past: Vec<Piece>,
     /// Radius.
     pub radius: f64,
-    /// Height of its base and of its top over the ground of the world.
-    pub span: [f64; 2],
+    /// Height of its base and of its top over the ground of the world, where it starts.
+    span: [f64; 2],
+    /// Height and tilt, where it flies.
+    flight: Option<Box<Flight>>,
     /// How much infrared it reflects.
     pub reflectance: f64,
     /// What it is called.
@@ -139,7 +151,59 @@ pub struct Body {
 impl Body {
     /// A body that stands still.
     pub fn new(name: String, radius: f64, span: [f64; 2], reflectance: f64, at: Place) -> Body {
-        Body { current: Piece::rest(0, at), past: Vec::new(), radius, span, reflectance, name }
+        Body { current: Piece::rest(0, at), past: Vec::new(), radius, span, flight: None, reflectance, name }
+    }
+
+    /// The same, able to leave the ground.
+    pub fn flying(self) -> Body {
+        Body { flight: Some(Box::new(Flight::new(self.span[0]))), ..self }
+    }
+
+    /// Height and tilt, where it flies.
+    pub fn flight(&self) -> Option<&Flight> {
+        self.flight.as_deref()
+    }
+
+    /// Height of the ground it started from.
+    pub fn floor(&self) -> f64 {
+        self.span[0]
+    }
+
+    /// Height of its base and of its top at `t`.
+    pub fn span(&self, t: i64) -> [f64; 2] {
+        match &self.flight {
+            None => self.span,
+            Some(f) => {
+                let base = f.at(t).height;
+                [base, base + (self.span[1] - self.span[0])]
+            }
+        }
+    }
+
+    /// Heights that it may be at, whenever.
+    pub fn reach(&self) -> [f64; 2] {
+        if self.flight.is_some() { [f64::NEG_INFINITY, f64::INFINITY] } else { self.span }
+    }
+
+    /// Goes on with a leg of its flight; see [`Flight::push`].
+    pub fn fly(&mut self, leg: Leg, checked: i64) {
+        if let Some(f) = &mut self.flight {
+            f.push(leg, checked);
+        }
+    }
+
+    /// Height and tilt at `t`; on the ground it stands upright.
+    pub fn attitude(&self, t: i64) -> Attitude {
+        match &self.flight {
+            Some(f) => f.at(t),
+            None => Attitude { height: self.span[0], ..Attitude::default() },
+        }
+    }
+
+    /// Velocity over the ground and turn rate at `t`, in map.
+    pub fn motion(&self, t: i64) -> (Vec2, f64) {
+        let piece = self.piece(t);
+        if t < piece.end { (piece.velocity, piece.turn) } else { ([0.0; 2], 0.0) }
     }
 
     /// The pieces from the one in force at `from` to the one in force at `to`, rests between them included.
@@ -174,14 +238,24 @@ impl Body {
     /// Pose in `map` at `t`: x y z qx qy qz qw.
     pub fn pose(&self, t: Time) -> [f64; 7] {
         let piece = self.piece(t.0);
-        let (p, q) = (piece.place(t.0), piece.quaternion(t.0));
-        [p.at[0], p.at[1], self.span[0], 0.0, 0.0, q[0], q[1]]
+        let (p, [z, w]) = (piece.place(t.0), piece.quaternion(t.0));
+        let Some(flight) = &self.flight else { return [p.at[0], p.at[1], self.span[0], 0.0, 0.0, z, w] };
+        let a = flight.at(t.0);
+        // First the heading, then pitch, then roll.
+        let ((sr, cr), (sp, cp)) = (libm::sincos(0.5 * a.roll), libm::sincos(0.5 * a.pitch));
+        let q = [
+            w * cp * sr - z * sp * cr,
+            w * sp * cr + z * cp * sr,
+            z * cp * cr - w * sp * sr,
+            w * cp * cr + z * sp * sr,
+        ];
+        [p.at[0], p.at[1], a.height, q[0], q[1], q[2], q[3]]
     }
 
     /// Position in `map` at `t`.
     pub fn position(&self, t: Time) -> [f64; 3] {
         let [x, y] = self.place(t.0).at;
-        [x, y, self.span[0]]
+        [x, y, self.span(t.0)[0]]
     }
 
     /// Cosine and sine of the heading at `t`.

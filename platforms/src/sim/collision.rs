@@ -12,7 +12,7 @@ use super::{
     body::{Body, Piece},
     geometry::{Aabb, Interval, Vec2, norm, sub, within},
     index::{Neighbours, Spot},
-    scene::Things,
+    scene::{Thing, Things},
 };
 use soifra_runtime::{Report, Time};
 
@@ -77,7 +77,7 @@ impl Collisions {
         let radius = bodies.iter().map(|b| b.radius).sum::<f64>() / bodies.len().max(1) as f64;
         Collisions {
             robots,
-            forms: bodies.iter().map(|b| (b.radius, b.span)).collect(),
+            forms: bodies.iter().map(|b| (b.radius, b.reach())).collect(),
             pairs: Vec::new(),
             checked: -1,
             at: vec![[0.0; 2]; bodies.len()],
@@ -203,7 +203,7 @@ impl Collisions {
                 things.grid.query(&Aabb::around(at, reach), |j| {
                     let thing = &things.all[j as usize];
                     let gap = thing.shape.distance(at) - body.radius - HYSTERESIS;
-                    if level(body.span, thing.span) && gap <= self.margins[i].allowed {
+                    if level(body.reach(), thing.span) && gap <= self.margins[i].allowed {
                         let (robot, other) = (i as u32, Other::Thing(j));
                         pairs.push(Pair { robot, other, touching: was_touching(robot, other), gap });
                     }
@@ -228,14 +228,18 @@ impl Collisions {
                 stretches(robot.pieces(from, to), other.pieces(from, to), from, to, |s, a, b| {
                     let p = sub(a.place(s.start).at, b.place(s.start).at);
                     let v = sub(a.velocity, b.velocity);
-                    s.contacts(&mut touching, |gap| within(p, v, reach + gap), &mut events);
+                    let level = level(robot.span(s.from), other.span(s.from));
+                    let contact = |gap| if level { within(p, v, reach + gap) } else { None };
+                    s.contacts(&mut touching, contact, &mut events);
                 });
             }
             Other::Thing(o) => {
-                let shape = &things.all[o as usize].shape;
+                let Thing { shape, span, .. } = &things.all[o as usize];
                 for a in robot.pieces(from, to) {
                     if let Some(s) = Stretch::new(a.start, a.end, from, to) {
-                        let contact = |gap| shape.overlap(a.at, a.velocity, robot.radius + gap);
+                        let level = level(robot.span(s.from), *span);
+                        let contact =
+                            |gap| if level { shape.overlap(a.at, a.velocity, robot.radius + gap) } else { None };
                         s.contacts(&mut touching, contact, &mut events);
                     }
                 }

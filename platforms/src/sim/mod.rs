@@ -8,6 +8,7 @@ mod args;
 mod body;
 mod cargo;
 mod collision;
+mod flight;
 mod geometry;
 mod index;
 mod motion;
@@ -25,7 +26,7 @@ use collision::Collisions;
 use motion::{Drive, Stride};
 use movers::Mover;
 use power::Battery;
-use scene::Things;
+use scene::{Endings, Things};
 use schedule::Schedule;
 use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
 
@@ -63,6 +64,8 @@ pub struct Simulator {
     platforms: Vec<u32>,
     /// By platform.
     batteries: Vec<Option<Battery>>,
+    /// By platform.
+    endings: Vec<Endings>,
 }
 
 /// What an actuator does with a command.
@@ -93,8 +96,12 @@ impl Simulator {
         let batteries = chassis.iter().map(|c| c.battery).collect();
         let population = scene::population(scene, &chassis)?;
         let platforms: Vec<u32> = scene.bodies().iter().map(|r| r.platform).collect();
-        let twists = |i: &u32| actuators[platforms[*i as usize] as usize].contains(&Actuator::Twist);
-        Ok(Simulator {
+        let endings = scene::endings(&scene.platforms);
+        let twists = |i: &u32| {
+            let platform = platforms[*i as usize] as usize;
+            actuators[platform].contains(&Actuator::Twist) || chassis[platform].drive.flies()
+        };
+        let mut simulator = Simulator {
             now: 0,
             planned: -1,
             looked: 0,
@@ -109,7 +116,35 @@ impl Simulator {
             batteries,
             actuators,
             platforms,
-        })
+            endings,
+        };
+        simulator.prepare();
+        Ok(simulator)
+    }
+
+    /// What flies takes off at once.
+    fn prepare(&mut self) {
+        let checked = self.collisions.checked();
+        for (drive, body) in self.drives.iter_mut().zip(&mut self.bodies) {
+            drive.prepare(body, 0, checked);
+        }
+    }
+
+    /// Does what a robot of a platform has for a case.
+    fn act(&mut self, now: Time, robot: u32, which: fn(&Endings) -> &'static str) -> &'static str {
+        self.advance(now.0.max(self.now));
+        let platform = self.platforms.get(robot as usize).and_then(|p| self.endings.get(*p as usize));
+        let action = platform.map_or("stop", which);
+        if action != "land" {
+            self.stop(robot);
+            return action;
+        }
+        let (now, checked) = (self.now, self.collisions.checked());
+        if let Some((drive, body)) = self.robot(robot) {
+            drive.land(body, now, checked);
+            self.planned = now;
+        }
+        action
     }
 
     /// Plans all motion up to `t`.
@@ -255,9 +290,11 @@ impl Platform for Simulator {
     }
 
     fn safe_action(&mut self, now: Time, robot: u32) -> &'static str {
-        self.advance(now.0.max(self.now));
-        self.stop(robot);
-        "stop"
+        self.act(now, robot, |e| e.safe)
+    }
+
+    fn finish(&mut self, now: Time, robot: u32) -> &'static str {
+        self.act(now, robot, |e| e.finish)
     }
 
     fn truth(&self) -> Option<&dyn WorldTruth> {

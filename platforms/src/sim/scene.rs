@@ -11,6 +11,7 @@ use super::{
     noise::Stream,
     power::Battery,
 };
+use soifra_graph::component::model;
 use soifra_runtime::{
     Scene,
     scene::{Part, PlatformScene, RobotScene},
@@ -135,7 +136,9 @@ pub fn chassis(platform: &PlatformScene) -> Result<Chassis, String> {
     if &*args.part.model != "cylinder" {
         return Err(args.wrong("the simulator has no such body"));
     }
-    let drive = motion::build(Args { part: one("drive")?, of: &of })?;
+    let take_off = platform.of_role("prepare").find(|p| &*p.model == "take_off");
+    let height = take_off.map(|part| Args { part, of: &of }.positive("height")).transpose()?;
+    let drive = motion::build(Args { part: one("drive")?, of: &of }, height)?;
     let battery = Battery::of(platform)?;
     Ok(Chassis { radius: args.positive("radius")?, height: args.positive("height")?, drive, battery })
 }
@@ -145,8 +148,15 @@ pub fn actuators(scene: &Scene, chassis: &[Chassis]) -> Result<Vec<Vec<Actuator>
     let one = |(platform, chassis): (&PlatformScene, &Chassis)| -> Result<Vec<Actuator>, String> {
         let of = format!("platform `{}`", platform.name);
         for part in ["safe", "prepare", "finish"].into_iter().flat_map(|role| platform.of_role(role)) {
-            if !matches!((&*part.role, &*part.model), ("safe" | "finish", "stop") | ("prepare", "stand")) {
-                return Err(Args { part, of: &of }.wrong("the simulator has no such action"));
+            let args = Args { part, of: &of };
+            match (&*part.role, &*part.model) {
+                ("safe" | "finish", "stop") | ("prepare", "stand") => {}
+                ("safe", "hover" | "land") | ("prepare", "take_off") | ("finish", "land")
+                    if chassis.drive.flies() => {}
+                ("safe", "hover" | "land") | ("prepare", "take_off") | ("finish", "land") => {
+                    return Err(args.wrong("its drive does not fly"));
+                }
+                _ => return Err(args.wrong("the simulator has no such action")),
             }
         }
         let actuator = |part| -> Result<Actuator, String> {
@@ -166,6 +176,28 @@ pub fn actuators(scene: &Scene, chassis: &[Chassis]) -> Result<Vec<Vec<Actuator>
     scene.platforms.iter().zip(chassis).map(one).collect()
 }
 
+/// What a robot does when in doubt, and at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Endings {
+    /// The safe action.
+    pub safe: &'static str,
+    /// At the end of a run.
+    pub finish: &'static str,
+}
+
+/// By platform.
+pub fn endings(platforms: &[PlatformScene]) -> Vec<Endings> {
+    let named = |p: &PlatformScene, role: &'static str| {
+        let part = p.of_role(role).next();
+        part.and_then(|part| model(role, &part.model)).map(|m| &*m.signature.name)
+    };
+    let of = |p: &PlatformScene| {
+        let safe = named(p, "safe").unwrap_or("stop");
+        Endings { safe, finish: named(p, "finish").unwrap_or(safe) }
+    };
+    platforms.iter().map(of).collect()
+}
+
 /// Robots and movers.
 pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, String> {
     let mut all = Population { bodies: Vec::new(), drives: Vec::new(), movers: Vec::new() };
@@ -175,7 +207,8 @@ pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, Stri
             .ok_or_else(|| format!("robot `{}` has no platform", robot.name))?;
         let (place, z) = start(robot)?;
         let span = [z, z + c.height];
-        all.bodies.push(Body::new(robot.name.clone(), c.radius, span, REFLECTANCE, place));
+        let body = Body::new(robot.name.clone(), c.radius, span, REFLECTANCE, place);
+        all.bodies.push(if c.drive.flies() { body.flying() } else { body });
         all.drives.push(c.drive.drive(scene.seed, &format!("{}/drive", robot.name)));
     }
     let reflectances = reflectances(scene)?;

@@ -15,7 +15,7 @@ impl WorldTruth for Simulator {
     fn position(&self, robot: u32) -> [f64; 3] {
         // The search for contacts has just asked all bodies where they are.
         if let Some([x, y]) = self.collisions.place(robot as usize, self.now) {
-            return [x, y, self.bodies[robot as usize].span[0]];
+            return [x, y, self.bodies[robot as usize].span(self.now)[0]];
         }
         self.bodies.get(robot as usize).map_or([0.0; 3], |b| b.position(Time(self.now)))
     }

@@ -1,6 +1,7 @@
 //! The simulator against closed forms, analytic geometry and itself.
 
 mod contacts;
+mod flight;
 mod kinematics;
 mod library;
 mod movers;

@@ -271,6 +271,16 @@ impl Engine<'_> {
     pub(super) fn safe_action(&mut self, robot: u32, reason: &str, cause: Option<u64>) {
         *self.actuators.safe_actions.entry(robot).or_default() += 1;
         let action = self.platform.safe_action(self.now, robot);
+        self.trace_safe_action(robot, action, reason, cause);
+    }
+
+    /// The run is over for a robot.
+    pub(super) fn finish_robot(&mut self, robot: u32, reason: &str, cause: Option<u64>) {
+        let action = self.platform.finish(self.now, robot);
+        self.trace_safe_action(robot, action, reason, cause);
+    }
+
+    fn trace_safe_action(&mut self, robot: u32, action: &str, reason: &str, cause: Option<u64>) {
         self.recorder.record(self.now, cause, || Event::SafeAction {
             robot,
             action: action.to_string(),

@@ -18,13 +18,11 @@ impl Engine<'_> {
             Outcome::Aborted => format!("the run is aborted: {}", end.reason),
             _ => "the run has ended".to_string(),
         };
-        // The last one, which every run ends with, says nothing about the run.
-        let safe_actions = self.actuators.safe_actions.clone();
         let cause = if why == INTERRUPTED { self.operator.cause() } else { None };
         for r in 0..self.scene.bodies().len() {
-            self.safe_action(r as u32, &why, cause);
+            // It says nothing about the run, and is not counted.
+            self.finish_robot(r as u32, &why, cause);
         }
-        self.actuators.safe_actions = safe_actions;
         self.judge_expectations(self.now, Occasion::End);
         let expectations = self.expectations();
         if end.outcome == Outcome::Success

@@ -138,5 +138,10 @@ pub(crate) fn own(scene: &Scene, robot: u32, which: Own, out: &mut [f64]) -> Res
         Own::Target => put(&r.target.ok_or(FaultKind::Unavailable("a target"))?, out),
         Own::Radius => put(&[body("radius")], out),
         Own::Height => put(&[body("height")], out),
+        Own::CruiseSpeed => {
+            let platform = scene.platforms.get(r.platform as usize);
+            let cruise = platform.and_then(|p| p.of_role("cruise").next());
+            put(&[cruise.ok_or(FaultKind::Unavailable("a cruise speed"))?.number("of")], out)
+        }
     }
 }

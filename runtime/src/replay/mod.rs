@@ -194,6 +194,10 @@ impl Platform for Watched<'_, '_> {
         self.platform.safe_action(now, robot)
     }
 
+    fn finish(&mut self, now: Time, robot: u32) -> &'static str {
+        self.platform.finish(now, robot)
+    }
+
     fn truth(&self) -> Option<&dyn WorldTruth> {
         self.platform.truth()
     }

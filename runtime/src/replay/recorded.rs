@@ -116,7 +116,7 @@ impl Platform for Recorded<'_, '_> {
 
     fn safe_action(&mut self, _: Time, robot: u32) -> &'static str {
         let Some(name) = self.tape.safe_action(robot) else { return "none recorded" };
-        let models = MODELS.iter().filter(|m| m.role == "safe").map(|m| &*m.signature.name);
+        let models = MODELS.iter().filter(|m| matches!(m.role, "safe" | "finish")).map(|m| &*m.signature.name);
         if let Some(known) = models.chain(self.names.iter().copied()).find(|n| *n == name) {
             return known;
         }

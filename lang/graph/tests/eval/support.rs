@@ -133,6 +133,7 @@ impl Env for World {
             Own::Index => f64::from(self.robot.unwrap_or(9)),
             Own::Radius => 0.07,
             Own::Height => 0.06,
+            Own::CruiseSpeed => 0.5,
             Own::Start => 1.0,
             Own::Target => 2.0,
         });

@@ -3,6 +3,7 @@
 pub mod differential;
 pub mod holonomic;
 mod lag;
+pub mod quadrotor;
 mod stride;
 
 use lag::Lag;
@@ -53,6 +54,12 @@ pub trait Drive: fmt::Debug + Send {
     fn stop(&mut self, body: &mut Body, now: i64, checked: i64) {
         self.twist(body, now, [0.0; 6], i64::MAX, checked);
     }
+    /// Makes ready what has to be: what flies takes off.
+    fn prepare(&mut self, _body: &mut Body, _now: i64, _checked: i64) {}
+    /// Comes down, where it flies; else stops.
+    fn land(&mut self, body: &mut Body, now: i64, checked: i64) {
+        self.stop(body, now, checked);
+    }
     /// What has been measured up to `t`, which lies in what is planned.
     fn travel(&self, t: i64) -> Travel;
 }
@@ -76,13 +83,18 @@ pub trait DriveModel: fmt::Debug {
     fn strides(&self) -> bool;
     /// Whether it has two wheels to count pulses at.
     fn wheels(&self) -> bool;
+    /// Whether it leaves the ground.
+    fn flies(&self) -> bool {
+        false
+    }
 }
 
-/// Builds the drive model of a component.
-pub fn build(args: Args<'_>) -> Result<Box<dyn DriveModel>, String> {
+/// Builds the drive model of a component. What flies takes off to `height` over its start.
+pub fn build(args: Args<'_>, height: Option<f64>) -> Result<Box<dyn DriveModel>, String> {
     match &*args.part.model {
         "differential" => Ok(Box::new(differential::Model::new(args)?)),
         "holonomic" => Ok(Box::new(holonomic::Model::new(args)?)),
+        "quadrotor" => Ok(Box::new(quadrotor::Model::new(args, height)?)),
         _ => Err(args.wrong("the simulator has no such drive")),
     }
 }

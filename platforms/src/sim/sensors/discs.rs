@@ -46,7 +46,7 @@ impl Sensor for Discs {
         self.found.clear();
         view.nearby.movers.query(&area, |i| {
             let b = &view.bodies[(view.nearby.count + i) as usize];
-            self.take(from, b.place(view.at.0).at, b.span[0], b.radius, u64::from(i));
+            self.take(from, b.place(view.at.0).at, b.span(view.at.0)[0], b.radius, u64::from(i));
         });
         view.things.grid.query(&area, |i| {
             let t = &view.things.all[i as usize];

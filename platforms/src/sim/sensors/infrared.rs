@@ -81,7 +81,7 @@ impl Sensor for Infrared {
         // A shiny surface is seen from a little farther than the range.
         let reach = self.rim + self.range.1 / REFLECTANCE.sqrt();
         let mut seen = std::mem::take(&mut self.seen);
-        in_sight(view, robot, at, reach, body.span[0] + self.height, &mut seen);
+        in_sight(view, robot, at, reach, body.span(view.at.0)[0] + self.height, &mut seen);
         self.seen = seen;
         out.push(self.bearings.len() as f64);
         for i in 0..self.bearings.len() {

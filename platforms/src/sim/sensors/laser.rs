@@ -123,7 +123,7 @@ impl Sensor for Laser {
         let body = &view.bodies[robot];
         let (at, ahead) = (body.place(view.at.0).at, body.direction(view.at));
         let mut seen = std::mem::take(&mut self.seen);
-        in_sight(view, robot, at, self.range.1, body.span[0] + self.height, &mut seen);
+        in_sight(view, robot, at, self.range.1, body.span(view.at.0)[0] + self.height, &mut seen);
         self.hits.fill(f64::INFINITY);
         for s in &seen {
             self.cast(&s.shape, at, ahead);

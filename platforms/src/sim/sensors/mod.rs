@@ -3,8 +3,10 @@
 pub mod charge;
 pub mod discs;
 pub mod encoders;
+pub mod flow_odometry;
 pub mod holding;
 pub mod ideal_pose;
+pub mod imu;
 pub mod infrared;
 pub mod laser;
 pub mod odometry;
@@ -128,6 +130,8 @@ pub fn build(mount: Mount<'_>) -> Result<Box<dyn Sensor>, String> {
         "ultrasonic" => Box::new(ultrasonic::Ultrasonic::new(mount)?),
         "laser" => Box::new(laser::Laser::new(mount)?),
         "encoders" => Box::new(encoders::Encoders::new(mount)?),
+        "imu" => Box::new(imu::Imu::new(mount)?),
+        "flow_odometry" => Box::new(flow_odometry::FlowOdometry::new(mount)?),
         "odometry" => Box::new(odometry::Odometry::new(mount)?),
         _ => return Err(mount.args.wrong("the simulator has no such sensor")),
     })

@@ -30,7 +30,7 @@ pub fn in_sight(view: &View<'_>, robot: usize, from: Vec2, reach: f64, height: f
     });
     let mut body = |i: usize| {
         let b = &view.bodies[i];
-        if i != robot && stands(b.span) {
+        if i != robot && stands(b.span(view.at.0)) {
             let shape = Shape::Disc { at: b.place(view.at.0).at, radius: b.radius };
             out.push(Seen { shape, reflectance: b.reflectance });
         }

@@ -57,7 +57,7 @@ impl Sensor for Ultrasonic {
         let body = &view.bodies[robot];
         let (at, ahead) = (body.place(view.at.0).at, body.direction(view.at));
         let reach = self.rim + self.range.1;
-        in_sight(view, robot, at, reach, body.span[0] + self.height, &mut self.seen);
+        in_sight(view, robot, at, reach, body.span(view.at.0)[0] + self.height, &mut self.seen);
         out.push(self.bearings.len() as f64);
         for &(bearing, dir) in &self.bearings {
             let dir = turned(dir, ahead[0], ahead[1]);
