@@ -6,6 +6,7 @@ pub mod arbitration;
 pub mod engine;
 pub mod mission;
 pub mod nodes;
+pub mod objects;
 pub mod ports;
 pub mod replay;
 pub mod scene;

@@ -2,7 +2,8 @@
 //! [`Platform`]; nothing above it knows which of them it talks to. And what it asks of whoever keeps the time
 //! ([`Pacer`]), through whom an operator acts on a run.
 
-use crate::{time::Time, trace::Event};
+use crate::{objects::Frame, time::Time, trace::Event};
+use std::sync::Arc;
 
 /// Readings handed over by one poll. Registers of all readings lie in one arena.
 #[derive(Debug, Default)]
@@ -11,6 +12,8 @@ pub struct Readings {
     pub items: Vec<Reading>,
     /// Register values; a reading's are `registers[from..to]`.
     pub registers: Vec<f64>,
+    /// Images.
+    pub images: Vec<Arc<Frame>>,
 }
 
 impl Readings {
@@ -25,13 +28,31 @@ impl Readings {
             delivered,
             from,
             to: self.registers.len() as u32,
+            image: None,
         });
+    }
+
+    /// Appends an image.
+    pub fn push_image(
+        &mut self,
+        robot: u32,
+        sensor: u32,
+        captured: Time,
+        delivered: Time,
+        image: Arc<Frame>,
+    ) {
+        self.push(robot, sensor, captured, delivered, &[0.0]);
+        if let Some(reading) = self.items.last_mut() {
+            reading.image = Some(self.images.len() as u32);
+        }
+        self.images.push(image);
     }
 
     /// Forgets everything, keeps the memory.
     pub fn clear(&mut self) {
         self.items.clear();
         self.registers.clear();
+        self.images.clear();
     }
 }
 
@@ -50,6 +71,8 @@ pub struct Reading {
     pub from: u32,
     /// One past the last register.
     pub to: u32,
+    /// Index in [`Readings::images`], for a camera; its register counts for nothing then.
+    pub image: Option<u32>,
 }
 
 /// A platform reports something besides readings.

@@ -165,6 +165,18 @@ pub(crate) const KINDS: &[(&str, &[Member])] = &[
             ("registers", "numbers?"),
         ],
     ),
+    (
+        "image",
+        &[
+            ("robot", "index"),
+            ("sensor", "index"),
+            ("captured", "time"),
+            ("width", "index"),
+            ("height", "index"),
+            ("digest", "text"),
+            ("view", "numbers"),
+        ],
+    ),
 ];
 
 /// Place of an event's kind in [`KINDS`].
@@ -201,6 +213,7 @@ pub(crate) fn kind(event: &Event) -> usize {
         Event::Device { .. } => 28,
         Event::Trouble { .. } => 29,
         Event::Input { .. } => 30,
+        Event::Image { .. } => 31,
     }
 }
 

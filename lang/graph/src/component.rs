@@ -49,11 +49,7 @@ const TABLE: &[(&str, &str, &str)] = &[
         "quadrotor(max_speed: Velocity, max_climb: Velocity, max_turn: AngularVelocity, max_tilt: Angle, attitude_lag: Duration = 80 ms, velocity_lag: Duration = 400 ms, turn_lag: Duration = 150 ms, drag: Frequency = 0.1 Hz, gust: Distribution<Acceleration> = 0)",
         "Four rotors: it tilts to go somewhere. The attitude is of second order with a natural frequency of 1 / attitude_lag, damped by 0.8; an autopilot holds the commanded speed with a time constant of velocity_lag, and the height; drag is the deceleration by the air for each m/s; a gust is an acceleration along each axis of map, drawn ten times a second",
     ),
-    (
-        "cruise",
-        "speed(of: Velocity)",
-        "How fast the robot usually goes: `robot.cruise_speed`",
-    ),
+    ("cruise", "speed(of: Velocity)", "How fast the robot usually goes: `robot.cruise_speed`"),
     (
         "sensor",
         "imu(period: Duration, latency: Duration = 0 s, rate_noise: Distribution<AngularVelocity> = 0, rate_bias: Distribution<AngularVelocity> = 0, tilt_noise: Distribution<Angle> = 0) -> Imu",

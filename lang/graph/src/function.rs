@@ -71,6 +71,7 @@ functions! {
     Draw "draw<D>(from: Distribution<D>) -> Quantity<D>" "A value drawn from a distribution, from the run's seed";
     Low "low<D>(range: Range<D>) -> Quantity<D>" "Lower bound";
     High "high<D>(range: Range<D>) -> Quantity<D>" "Upper bound";
+    Brightness "brightness(image: Image) -> Number" "How bright an image is in the mean, 0 to 1";
     Within "within<D>(x: Quantity<D>, range: Range<D>) -> Bool" "Whether a quantity is in a range";
 }
 
@@ -83,6 +84,12 @@ impl Function {
     /// Its signature.
     pub fn signature(self) -> &'static Signature {
         &SIGNATURES[&self]
+    }
+
+    /// Whether it is computed by a service of the runtime's surroundings, such as a library for images, and not by
+    /// the machine itself.
+    pub fn is_service(self) -> bool {
+        matches!(self, Function::Brightness)
     }
 
     /// Whether two calls with the same arguments may give different values.

@@ -33,5 +33,5 @@ pub use function::{FUNCTIONS, Function};
 pub use mission::*;
 pub use signature::Signature;
 pub use span::Span;
-pub use types::{Enum, Frame, Name, Record, Type, TypeTable};
+pub use types::{Enum, Frame, Name, OPAQUE, Record, Type, TypeTable};
 pub use value::{Distribution, Texts, Value};

@@ -1,5 +1,6 @@
 //! Textual types, and types with holes: the signatures of functions and components.
 
+use crate::OPAQUE;
 use crate::{Dim, Frame, Type, dim::Unit};
 use std::collections::BTreeMap;
 
@@ -273,6 +274,7 @@ fn parse_nested(text: &str, depth: usize) -> Result<Pattern, String> {
         return exact(Type::Handle(name.trim().into()));
     }
     match text {
+        _ if OPAQUE.contains(&text) => exact(Type::Handle(text.into())),
         "Bool" => exact(Type::Bool),
         "Int" => exact(Type::Int),
         "Text" => exact(Type::Text),

@@ -123,6 +123,7 @@ impl fmt::Display for Type {
             Type::Distribution(d) => write!(f, "Distribution<{d}>"),
             Type::Agent => f.write_str("Agent"),
             Type::Conversation(n) => write!(f, "Conversation<{n}>"),
+            Type::Handle(n) if OPAQUE.contains(&&**n) => write!(f, "{n}"),
             Type::Handle(n) => write!(f, "handle {n}"),
         }
     }
@@ -140,6 +141,9 @@ impl TryFrom<String> for Type {
         crate::pattern::parse_type(&s)
     }
 }
+
+/// Types whose values are passed around and never looked into: only services can.
+pub const OPAQUE: [&str; 1] = ["Image"];
 
 /// A record: named fields in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -117,10 +117,13 @@ fn airborne(p: &Platform, out: &mut Vec<Diagnostic>) {
     }
     for c in p.components.iter().filter(|c| !flies && IN_THE_AIR.contains(&(&*c.role, &*c.model))) {
         out.push(
-            Diagnostic::error(code::INCOMPLETE_PLATFORM, format!("`{}` of `{}` needs wings", c.model, p.name))
-                .at(c.at, "only what flies can do this")
-                .at(drive.at, format!("this drive is {}", drive.model))
-                .hint("write `stop()`, or take a drive that flies"),
+            Diagnostic::error(
+                code::INCOMPLETE_PLATFORM,
+                format!("`{}` of `{}` needs wings", c.model, p.name),
+            )
+            .at(c.at, "only what flies can do this")
+            .at(drive.at, format!("this drive is {}", drive.model))
+            .hint("write `stop()`, or take a drive that flies"),
         );
     }
 }

@@ -238,8 +238,9 @@ impl Collisions {
                 for a in robot.pieces(from, to) {
                     if let Some(s) = Stretch::new(a.start, a.end, from, to) {
                         let level = level(robot.span(s.from), *span);
-                        let contact =
-                            |gap| if level { shape.overlap(a.at, a.velocity, robot.radius + gap) } else { None };
+                        let contact = |gap| {
+                            if level { shape.overlap(a.at, a.velocity, robot.radius + gap) } else { None }
+                        };
                         s.contacts(&mut touching, contact, &mut events);
                     }
                 }

@@ -141,7 +141,7 @@ impl Schedule {
                 let reading = |(seat, robot): (usize, &u32)| {
                     let from = (from + seat * width) as u32;
                     let (robot, sensor, to) = (*robot, group.index, from + width as u32);
-                    Reading { robot, sensor, captured, delivered, from, to }
+                    Reading { robot, sensor, captured, delivered, from, to, image: None }
                 };
                 readings.items.extend(group.robots.iter().enumerate().map(reading));
                 group.spare.push(flight.registers);

@@ -475,6 +475,7 @@ impl Engine<'_> {
             params: &self.params,
             texts: &self.texts,
             directory: &self.directory,
+            store: &self.store,
             places: &self.places,
             now: self.now,
             seed: self.seed,

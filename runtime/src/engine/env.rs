@@ -7,6 +7,7 @@ use super::{
     log::{Item, Log, Opened, Replied, Told},
     regions::Regions,
     senses::Senses,
+    store::{AgentShelf, Store},
 };
 use crate::{
     Mission, Scene, Time,
@@ -14,7 +15,7 @@ use crate::{
     seed::Stream,
 };
 use soifra_graph::{
-    Distribution, Name, Own, Type, TypeTable, Value,
+    Distribution, Function, Name, Own, Type, TypeTable, Value,
     eval::{Effect, Env, FaultKind, copy_registers},
     reason,
 };
@@ -30,6 +31,7 @@ pub(crate) struct Instant<'a> {
     pub params: &'a [f64],
     pub texts: &'a soifra_graph::Texts,
     pub directory: &'a Directory,
+    pub store: &'a Store,
     /// True positions of the robots, for the radio.
     pub places: &'a [[f64; 3]],
     pub now: Time,
@@ -126,6 +128,13 @@ impl Env for AgentEnv<'_, '_> {
 
     fn inside(&self, point: [f64; 3], region: u32) -> Result<bool, FaultKind> {
         self.instant.regions.inside(point, region)
+    }
+
+    fn service(&mut self, which: Function, args: &[f64], out: &mut [f64]) -> Result<(), FaultKind> {
+        let services = self.instant.mission.services().ok_or(FaultKind::Unavailable("a service"))?;
+        let mut shelf =
+            AgentShelf { store: self.instant.store, made: &mut self.log.made, instance: self.instance };
+        services.call(which, args, &mut shelf, out)
     }
 
     fn draw(&mut self, from: Distribution) -> Result<f64, FaultKind> {

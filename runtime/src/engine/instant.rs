@@ -8,8 +8,11 @@ use super::{
     queue::Scheduled,
     report::{INTERRUPTED, RunReport},
 };
-use crate::{Event, Report, Time};
-use std::sync::atomic::Ordering;
+use crate::{Event, Reading, Report, Time, objects::Frame};
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, atomic::Ordering},
+};
 
 /// The fewest activations at one instant that are too many.
 const TOO_MANY: usize = 1_000_000;
@@ -90,6 +93,7 @@ impl Engine<'_> {
         self.operate_all();
         self.arrive();
         self.activate_all();
+        self.tidy_store();
         self.forget_talks();
         self.decide();
         self.judge_instant()
@@ -118,12 +122,22 @@ impl Engine<'_> {
         self.trace_poses();
         for r in &readings.items {
             let registers = readings.registers.get(r.from as usize..r.to as usize).unwrap_or_default();
-            let record = self.recorder.record(self.now, None, || Event::Reading {
-                robot: r.robot,
-                sensor: r.sensor,
-                captured: r.captured,
-                registers: registers.to_vec(),
-            });
+            let number;
+            let (registers, record) = match r.image.and_then(|i| readings.images.get(i as usize)) {
+                Some(image) => {
+                    number = [self.store.deliver(Arc::clone(image) as _)];
+                    (number.as_slice(), self.trace_image(r, image))
+                }
+                None => {
+                    let record = self.recorder.record(self.now, None, || Event::Reading {
+                        robot: r.robot,
+                        sensor: r.sensor,
+                        captured: r.captured,
+                        registers: registers.to_vec(),
+                    });
+                    (registers, record)
+                }
+            };
             let altered;
             let registers = if self.troubles_sensors() {
                 let Some(left) = self.troubled(r.robot, r.sensor, registers, record) else { continue };
@@ -142,6 +156,33 @@ impl Engine<'_> {
         }
         self.readings = readings;
         self.reports = reports;
+    }
+
+    fn trace_image(&mut self, r: &Reading, image: &Frame) -> Option<u64> {
+        self.recorder.record(self.now, None, || Event::Image {
+            robot: r.robot,
+            sensor: r.sensor,
+            captured: r.captured,
+            width: image.width,
+            height: image.height,
+            digest: format!("{:016x}", image.digest),
+            view: image.view.clone(),
+        })
+    }
+
+    /// Forgets images and other objects that no state and no reading means any more.
+    fn tidy_store(&mut self) {
+        if !self.store.has_grown() {
+            return;
+        }
+        let mut used: BTreeSet<u64> = self.senses.opaque().map(|x| x as u64).collect();
+        for who in &self.cast.instances {
+            let opaque = &self.mission.agents[who.agent as usize].opaque;
+            used.extend(
+                opaque.iter().filter_map(|at| self.minds.states.get(who.states + at)).map(|x| *x as u64),
+            );
+        }
+        self.store.tidy(&used);
     }
 
     /// Counts contacts and judges what asks for them, at the instants at which they began.
@@ -320,12 +361,16 @@ impl Engine<'_> {
                 params: &self.params,
                 texts: &self.texts,
                 directory: &self.directory,
+                store: &self.store,
                 places: &self.places,
                 now: self.now,
                 seed: self.seed,
                 trace: self.recorder.on(),
             };
             workers.evaluate(&instant, &mut self.minds, &releases, &mut outcomes);
+            for desk in &mut workers.desks {
+                self.store.commit(desk.log.made.drain(..));
+            }
             // Who died before is not among those who were evaluated.
             self.reset.clear();
             for (release, outcome) in releases.iter().zip(&mut outcomes) {

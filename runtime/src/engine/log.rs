@@ -1,5 +1,6 @@
 //! What an activation did, kept until it is committed in the deterministic order.
 
+use super::store::Made;
 use crate::nodes::Ended;
 use serde::{Deserialize, Serialize};
 use soifra_graph::{Govern, Name, Span};
@@ -89,6 +90,9 @@ pub(crate) struct Replied {
 pub(crate) struct Log {
     pub items: Vec<Item>,
     pub registers: Vec<f64>,
+    /// Objects that were made.
+    #[serde(skip)]
+    pub made: Vec<Made>,
 }
 
 impl Log {
@@ -130,6 +134,7 @@ impl Log {
     pub fn clear(&mut self) {
         self.items.clear();
         self.registers.clear();
+        self.made.clear();
     }
 }
 

@@ -37,6 +37,7 @@ pub mod report;
 mod senses;
 mod setup;
 pub(crate) mod snapshot;
+mod store;
 mod talks;
 mod troubles;
 mod verdict;
@@ -72,6 +73,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     sync::atomic::AtomicBool,
 };
+use store::Store;
 use talks::Talks;
 use troubles::Troubles;
 
@@ -120,6 +122,7 @@ pub struct Engine<'m> {
     /// Of each declared conversation.
     channels: Vec<TalkChannel>,
     directory: Directory,
+    store: Store,
     /// Who could serve sub-goals.
     pool: Pool,
     planner: Planner,

@@ -17,6 +17,9 @@ struct Slot {
     captured: Time,
     record: u64,
     state: State,
+    /// It is the number of an object.
+    #[serde(default)]
+    opaque: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,7 +52,8 @@ impl Senses {
                 let grace = period.map_or(Time::MAX, |p| p + p + latency);
                 let at = s.registers.len() as u32;
                 let (captured, record, state) = (Time::ZERO, 0, State::Never);
-                s.slots.push(Slot { at, width: width as u32, grace, captured, record, state });
+                let opaque = matches!(part.ty, Some(Type::Handle(_)));
+                s.slots.push(Slot { at, width: width as u32, grace, captured, record, state, opaque });
                 s.registers.resize(s.registers.len() + width, 0.0);
             }
         }
@@ -98,6 +102,11 @@ impl Senses {
             State::Invalid => Err(reason::INVALID),
             State::Valid => Ok(&self.registers[slot.at as usize..(slot.at + slot.width) as usize]),
         }
+    }
+
+    /// Objects that are readings.
+    pub fn opaque(&self) -> impl Iterator<Item = f64> {
+        self.slots.iter().filter(|s| s.opaque).filter_map(|s| self.registers.get(s.at as usize).copied())
     }
 
     /// The record of the reading that counts now.

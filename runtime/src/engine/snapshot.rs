@@ -76,7 +76,8 @@ impl Snapshot {
 impl Engine<'_> {
     /// Hands a snapshot to the trace when it wants one.
     pub(super) fn snapshot(&mut self) {
-        if self.recorder.wants_snapshot(self.now) {
+        // What a state means but does not hold cannot be kept in a snapshot: such runs replay from their start.
+        if self.store.is_empty() && self.recorder.wants_snapshot(self.now) {
             let snapshot = Snapshot {
                 t: self.now,
                 next: self.recorder.next(),

@@ -9,6 +9,8 @@ use soifra_graph::{
 /// An agent type.
 pub(crate) struct AgentCode {
     pub states: Layout,
+    /// Registers of its states that are numbers of objects.
+    pub opaque: Vec<usize>,
     /// Initial value of each state; they read arguments and parameters.
     pub initial: Vec<Block>,
     pub units: Vec<UnitCode>,

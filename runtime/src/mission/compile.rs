@@ -3,8 +3,8 @@
 use super::{code::*, uses::Uses};
 use crate::nodes::{Act, Kind, MAX_DEPTH, Part, Tree};
 use soifra_graph::{
-    Agent, Arbiter, Expr, Graph, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy, Talk,
-    Timing, Trigger, Type, Unit, UnitKind,
+    Agent, Arbiter, Expr, Graph, OPAQUE, Op, PlanKind, PlanNode, Refine, Span, Stmt, StmtKind, Strategy,
+    Talk, Timing, Trigger, Type, TypeTable, Unit, UnitKind,
     eval::{Block, CompileError, Compiler, Layout, Scope},
 };
 
@@ -72,6 +72,7 @@ pub(super) fn agent(
     }
     let mut code = AgentCode {
         states: Layout::states(&graph.types, agent),
+        opaque: opaque(graph, agent),
         initial: Vec::new(),
         units: Vec::new(),
         offers: Vec::new(),
@@ -497,4 +498,35 @@ fn arbiter(
         hears: uses.heard,
     };
     Ok((code, scope.frame().max(locals)))
+}
+
+/// Registers of an agent's states that are numbers of objects.
+fn opaque(graph: &Graph, agent: &Agent) -> Vec<usize> {
+    fn of(ty: &Type, types: &TypeTable, at: usize, out: &mut Vec<usize>) {
+        match ty {
+            Type::Handle(name) if OPAQUE.contains(&&**name) => out.push(at),
+            Type::Option(inner) => of(inner, types, at + 1, out),
+            Type::List(item, n) => {
+                let (width, before) = (types.width(item), out.len());
+                of(item, types, at + 1, out);
+                let first: Vec<usize> = out.drain(before..).collect();
+                let items = if first.is_empty() { 0 } else { *n as usize };
+                out.extend((0..items).flat_map(|i| first.iter().map(move |a| a + i * width)));
+            }
+            Type::Record(name) => {
+                let mut at = at;
+                for (_, field) in types.records.get(name).into_iter().flat_map(|r| &r.fields) {
+                    of(field, types, at, out);
+                    at += types.width(field);
+                }
+            }
+            _ => {}
+        }
+    }
+    let (mut out, mut at) = (Vec::new(), 0);
+    for s in &agent.states {
+        of(&s.ty, &graph.types, at, &mut out);
+        at += graph.types.width(&s.ty);
+    }
+    out
 }

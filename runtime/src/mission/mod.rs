@@ -9,7 +9,10 @@ mod scene;
 pub(crate) mod start;
 pub(crate) mod uses;
 
-use crate::Scene;
+use crate::{
+    Scene,
+    objects::{Cameras, Retake, Services},
+};
 use code::{AgentCode, GroupCode, JudgeCode, SceneCode, TalkChannelCode, TopicCode};
 use compile::Compiled;
 pub use scene::MAX_INSTANCES;
@@ -17,7 +20,7 @@ use soifra_graph::{
     Diagnostic, Graph, Span, Texts, Type, Value,
     eval::{Block, CompileError, Compiler, Layout, Program},
 };
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Code of diagnostics about a graph that does not fit together.
 pub const DAMAGED: &str = "S0801";
@@ -54,9 +57,31 @@ pub struct Mission {
     pub(crate) plans: Vec<Option<Block>>,
     pub(crate) judge: JudgeCode,
     pub(crate) scene: SceneCode,
+    services: Option<Arc<dyn Services>>,
+    cameras: Option<Arc<dyn Cameras>>,
 }
 
 impl Mission {
+    /// The same mission with services that compute what the machine itself cannot.
+    pub fn with_services(self, services: Arc<dyn Services>) -> Mission {
+        Mission { services: Some(services), ..self }
+    }
+
+    /// The same mission with cameras for replays.
+    pub fn with_cameras(self, cameras: Arc<dyn Cameras>) -> Mission {
+        Mission { cameras: Some(cameras), ..self }
+    }
+
+    /// What takes the images of a recorded run of a scene again.
+    pub(crate) fn cameras(&self, scene: &Scene) -> Option<Box<dyn Retake>> {
+        self.cameras.as_ref()?.of(scene)
+    }
+
+    /// The services, if there are any.
+    pub(crate) fn services(&self) -> Option<&dyn Services> {
+        self.services.as_deref()
+    }
+
     /// Compiles all code of a graph.
     ///
     /// # Errors
@@ -84,6 +109,8 @@ impl Mission {
                     plans,
                     judge,
                     scene,
+                    services: None,
+                    cameras: None,
                 })
             }
             _ => Err(errors.into_iter().map(diagnostic).collect()),

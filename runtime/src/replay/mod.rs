@@ -67,7 +67,7 @@ pub fn verify(
     let scene = mission.scene(settings).map_err(ReplayError::Start)?;
     let stop = AtomicBool::new(false);
     let tape = Tape::new(records.into_iter());
-    let mut platform = Recorded::new(&tape, scene.bodies().len(), &stop);
+    let mut platform = Recorded::new(&tape, scene.bodies().len(), &stop, mission.cameras(&scene));
     compare(mission, settings, &scene, &mut platform, &tape, &stop, None)
 }
 
@@ -85,7 +85,7 @@ pub fn verify_from(
     let stop = AtomicBool::new(false);
     let next = snapshot.next;
     let tape = Tape::new(records.into_iter().skip_while(move |r| r.n < next));
-    let mut platform = Recorded::resumed(&tape, &snapshot, &stop);
+    let mut platform = Recorded::resumed(&tape, &snapshot, &stop, mission.cameras(&scene));
     compare(mission, settings, &scene, &mut platform, &tape, &stop, Some(snapshot))
 }
 

@@ -1,7 +1,9 @@
 //! A platform that hands over what another one handed over in a recorded run.
 
 use super::tape::Tape;
-use crate::{Event, Platform, Readings, Report, Snapshot, Time, WorldTruth, engine::report::LOST};
+use crate::{
+    Event, Platform, Readings, Report, Snapshot, Time, WorldTruth, engine::report::LOST, objects::Retake,
+};
 use soifra_graph::component::MODELS;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -17,6 +19,7 @@ pub(super) struct Recorded<'t, 'r> {
     stop: &'t AtomicBool,
     truth: Option<Truth>,
     names: Vec<&'static str>,
+    cameras: Option<Box<dyn Retake>>,
 }
 
 /// World truth as recorded.
@@ -32,7 +35,12 @@ struct Truth {
 }
 
 impl<'t, 'r> Recorded<'t, 'r> {
-    pub(super) fn new(tape: &'t Tape<'r>, robots: usize, stop: &'t AtomicBool) -> Self {
+    pub(super) fn new(
+        tape: &'t Tape<'r>,
+        robots: usize,
+        stop: &'t AtomicBool,
+        cameras: Option<Box<dyn Retake>>,
+    ) -> Self {
         tape.pull(Time::ZERO);
         let truth = tape.has_poses().then(|| Truth {
             poses: vec![IDENTITY; robots],
@@ -41,11 +49,16 @@ impl<'t, 'r> Recorded<'t, 'r> {
             touching: vec![0; robots],
             ..Truth::default()
         });
-        Recorded { tape, stop, truth, names: Vec::new() }
+        Recorded { tape, stop, truth, names: Vec::new(), cameras }
     }
 
     /// The rest of a run, from a snapshot on, of which the tape has the records after it.
-    pub(super) fn resumed(tape: &'t Tape<'r>, snapshot: &Snapshot, stop: &'t AtomicBool) -> Self {
+    pub(super) fn resumed(
+        tape: &'t Tape<'r>,
+        snapshot: &Snapshot,
+        stop: &'t AtomicBool,
+        cameras: Option<Box<dyn Retake>>,
+    ) -> Self {
         tape.pull(snapshot.t);
         // The operator stopped the run while it waited for what comes after the snapshot.
         stop.store(tape.interrupted(snapshot.t), Ordering::Relaxed);
@@ -57,7 +70,7 @@ impl<'t, 'r> Recorded<'t, 'r> {
             touching: t.contacts.touching.clone(),
             total: t.contacts.total,
         });
-        Recorded { tape, stop, truth, names: Vec::new() }
+        Recorded { tape, stop, truth, names: Vec::new(), cameras }
     }
 }
 
@@ -76,6 +89,13 @@ impl Platform for Recorded<'_, '_> {
             match input.event {
                 Event::Reading { robot, sensor, captured, registers } => {
                     readings.push(robot, sensor, captured, at, &registers);
+                }
+                Event::Image { robot, sensor, captured, view, .. } => {
+                    let taken = self.cameras.as_mut();
+                    // An image that cannot be taken again is none; the comparison finds the first that is missing.
+                    if let Some(image) = taken.and_then(|c| c.retake(robot, sensor, captured, &view)) {
+                        readings.push_image(robot, sensor, captured, at, image);
+                    }
                 }
                 Event::Contact { robot, other, with, begin } => {
                     if let Some(truth) = &mut self.truth {
@@ -116,7 +136,8 @@ impl Platform for Recorded<'_, '_> {
 
     fn safe_action(&mut self, _: Time, robot: u32) -> &'static str {
         let Some(name) = self.tape.safe_action(robot) else { return "none recorded" };
-        let models = MODELS.iter().filter(|m| matches!(m.role, "safe" | "finish")).map(|m| &*m.signature.name);
+        let models =
+            MODELS.iter().filter(|m| matches!(m.role, "safe" | "finish")).map(|m| &*m.signature.name);
         if let Some(known) = models.chain(self.names.iter().copied()).find(|n| *n == name) {
             return known;
         }

@@ -131,7 +131,11 @@ impl State<'_> {
         };
         self.read = Some(r.t);
         let input = match &r.event {
-            Event::Reading { .. } | Event::Pose { .. } | Event::Mover { .. } | Event::Contact { .. } => true,
+            Event::Reading { .. }
+            | Event::Image { .. }
+            | Event::Pose { .. }
+            | Event::Mover { .. }
+            | Event::Contact { .. } => true,
             Event::Fault { agent, .. } => agent == PLATFORM,
             Event::SafeAction { reason, .. } | Event::End { reason, .. } if reason == INTERRUPTED => {
                 self.interrupted = Some(r.t);

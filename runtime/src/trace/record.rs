@@ -60,6 +60,17 @@ pub enum Event {
         #[serde(with = "exact::registers")]
         registers: Vec<f64>,
     },
+    /// An image crossed a port: a reading of which only the digest is kept, and from what it can be taken again.
+    Image {
+        robot: u32,
+        sensor: u32,
+        captured: Time,
+        width: u32,
+        height: u32,
+        digest: String,
+        #[serde(with = "exact::registers")]
+        view: Vec<f64>,
+    },
     /// A unit was released, ran, and finished. `skipped` says why it did not run. When a unit on a core
     /// finishes, a [`Event::Completion`] tells.
     Activation {

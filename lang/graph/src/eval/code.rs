@@ -149,6 +149,8 @@ pub(super) enum Instr {
     Executed { d: u32, unit: u32 },
     Achieved { d: u32, goal: u32 },
     Inside { d: u32, a: u32, b: u32 },
+    /// A service; arguments one after the other from `a`. `sizes` indexes [`Program::sizes`].
+    Service { f: Function, d: u32, a: u32, sizes: u32 },
     Draw { d: u32, a: u32 },
 
     /// Puts robot 0 in question; keeps the former one, the index and the count in `q`, `q + 1`, `q + 2`.
@@ -320,6 +322,8 @@ pub struct Program {
     pub(super) believed: Vec<(u32, u32, u32)>,
     /// Agent, unit, what is asked.
     pub(super) executed: Vec<(u32, u32, Execution)>,
+    /// Registers of the arguments and of the value of a service.
+    pub(super) sizes: Vec<(u32, u32)>,
     /// Names that the directory is asked for.
     pub(super) services: Vec<Name>,
 }

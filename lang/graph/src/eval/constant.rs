@@ -109,6 +109,7 @@ fn not_constant(op: &Op, known: &Known<'_>) -> Option<&'static str> {
         Op::Achieved(_) => Some("the status of a goal"),
         Op::Builtin(Function::Draw) => Some("randomness"),
         Op::Builtin(Function::Inside) => Some("the world"),
+        Op::Builtin(f) if f.is_service() => Some("a service"),
         _ => None,
     }
 }

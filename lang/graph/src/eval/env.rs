@@ -1,7 +1,7 @@
 //! What a run may ask of its surroundings, and what it does to them.
 
 use super::FaultKind;
-use crate::{Distribution, Execution, Govern, Name, Own, Run, Span, Truth, Type};
+use crate::{Distribution, Execution, Function, Govern, Name, Own, Run, Span, Truth, Type};
 
 /// The surroundings of a run. Every method has a default that says "not available here", so that an
 /// implementation answers only what may be asked in its place.
@@ -73,6 +73,10 @@ pub trait Env {
     }
     /// Puts another robot in question. A run that does so puts the former one back, also on a fault.
     fn set_robot(&mut self, _robot: Option<u32>) {}
+    /// What a service computes from arguments that lie one after the other.
+    fn service(&mut self, _which: Function, _args: &[f64], _out: &mut [f64]) -> Result<(), FaultKind> {
+        Err(FaultKind::Unavailable("a service"))
+    }
     /// Whether a point of `map` is in a region of the world.
     fn inside(&self, _point: [f64; 3], _region: u32) -> Result<bool, FaultKind> {
         Err(FaultKind::Unavailable("the world"))

@@ -231,6 +231,14 @@ impl Program {
                 let inside = m.env.inside(some(array::<3>(frame, a as usize))?, get(frame, b)? as u32)?;
                 truth(frame, d, inside)
             }
+            Instr::Service { f, d, a, sizes } => {
+                let (args, n) = *some(self.sizes.get(sizes as usize))?;
+                // What it is given and where its value goes may lie anywhere; a copy is nothing beside the work.
+                let args = some(frame.get(a as usize..(a + args) as usize))?.to_vec();
+                let out = out(frame, d, n)?;
+                m.env.service(f, &args, out)?;
+                if out.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(FaultKind::NotFinite) }
+            }
             Instr::Draw { d, a } => {
                 let from = Distribution::from_registers(&some(array::<4>(frame, a as usize))?);
                 builtins::can_draw(from)?;

@@ -22,6 +22,7 @@ impl Compiler<'_> {
                 let place = self.generate(range, None)?;
                 Ok(self.settle(place.plus(u32::from(f == F::High)), dest, 1, e.span))
             }
+            F::Brightness => self.gen_service(e, f, dest),
             F::Draw | F::Inside => self.gen_env_function(e, f, dest),
             F::Norm | F::Distance => {
                 self.check_call(e, f)?;
@@ -185,6 +186,23 @@ impl Compiler<'_> {
         };
         self.body.top = top;
         self.emit(instr, e.span);
+        Ok(Place::frame(d))
+    }
+
+    /// Services of the surroundings.
+    #[inline(never)]
+    fn gen_service(&mut self, e: &Expr, f: Function, dest: Option<u32>) -> Compiled<Place> {
+        let ty = self.check_call(e, f)?;
+        self.body.variable += 1;
+        let n = self.width(&ty, e.span)?;
+        let d = self.dest(dest, n, e.span)?;
+        let top = self.body.top;
+        let a = self.in_a_row(&e.args)?;
+        let args = self.body.top - a;
+        self.body.top = top;
+        self.program.sizes.push((args, n));
+        let sizes = (self.program.sizes.len() - 1) as u32;
+        self.emit(Instr::Service { f, d, a, sizes }, e.span);
         Ok(Place::frame(d))
     }
 
