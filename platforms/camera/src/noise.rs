@@ -49,14 +49,25 @@ pub fn noise_in_bands(image: &mut Image, sigma: f64, key: u64, frame: u64, bands
 /// Adds noise to a row.
 fn add(row: &mut [u8], table: &[i16; QUANTILES], stream: u64) {
     let mut counter = stream;
-    for channels in row.chunks_mut(SERVED) {
-        let mut bits = mix(counter);
+    let mut next = || {
+        let bits = mix(counter);
         counter = counter.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        for channel in channels {
-            let sum = i16::from(*channel) + table[bits as usize % QUANTILES];
-            *channel = sum.clamp(0, 255) as u8;
-            bits >>= BITS;
-        }
+        bits
+    };
+    let (fives, rest) = row.as_chunks_mut::<SERVED>();
+    for five in fives {
+        add_to(five, table, next());
+    }
+    add_to(rest, table, next());
+}
+
+/// Adds noise to channels that one hash serves.
+#[inline(always)]
+fn add_to(channels: &mut [u8], table: &[i16; QUANTILES], mut bits: u64) {
+    for channel in channels {
+        let sum = i16::from(*channel) + table[bits as usize % QUANTILES];
+        *channel = sum.clamp(0, 255) as u8;
+        bits >>= BITS;
     }
 }
 

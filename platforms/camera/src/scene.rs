@@ -9,6 +9,14 @@ use crate::texture::Texture;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TextureIndex(pub(crate) u32);
 
+impl TextureIndex {
+    /// How many textures the scene took before this one.
+    #[must_use]
+    pub fn number(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// A part of a scene: a mesh that has a pose in every frame, or several, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PartIndex(pub(crate) u32);

@@ -4,7 +4,7 @@ use crate::facet::{Facet, Optics, at};
 use crate::light::FULL;
 use crate::render::Filter;
 use crate::scene::Scene;
-use crate::texture::{Level, REPEAT_BITS, Texture};
+use crate::texture::{Level, Texture};
 use crate::visibility::{NOTHING, Strip};
 
 /// A colour as three numbers of 16 bits in one word, red lowest: one multiplication weighs all channels.
@@ -38,14 +38,13 @@ pub(crate) fn brighten(colour: Lanes, shade: u32) -> Lanes {
 /// `a` and `b` in 256ths of the way between them.
 #[inline(always)]
 fn blend(a: Lanes, b: Lanes, share: u32) -> Lanes {
-    ((a * u64::from(256 - share) + b * u64::from(share) + HALVES) >> 8) & BYTES
+    // A channel of `b - a` may borrow from the next; the sum gives it back.
+    ((a << 8).wrapping_add(b.wrapping_sub(a).wrapping_mul(u64::from(share))).wrapping_add(HALVES) >> 8)
+        & BYTES
 }
 
 /// Pixels that share one level of detail.
 const SPAN: usize = 8;
-
-/// Texture coordinates of the pixels of a span, in 2 to the minus [`REPEAT_BITS`] of a repeat.
-type Places = [u32; SPAN];
 
 /// Fills in the colours of a strip.
 pub(crate) fn shade(
@@ -85,24 +84,31 @@ fn run_of(facet: &Facet, texture: &Texture, x: usize, y: usize, filter: Filter, 
     };
     let (width, height) = finest.size();
     let size = [width as f64, height as f64];
+    let last = levels.len() as i32 - 1;
     let y = y as f64 + 0.5;
     for (out, x) in out.chunks_mut(SPAN).zip((x..).step_by(SPAN)) {
-        let x = x as f64 + 0.5;
-        let here = Here::new(facet, x, y);
-        let (us, vs) = here.places(facet);
-        let detail = if filter == Filter::Bilinear { 0 } else { here.detail(facet, size, out.len()) };
-        let last = levels.len() as i32 - 1;
-        if filter == Filter::Trilinear {
-            let coarser = (detail >> DETAIL_BITS).clamp(0, last);
-            let share = if detail < 0 { 0 } else { (detail >> (DETAIL_BITS - 8)) as u32 & 0xff };
-            let (fine, coarse) = (&levels[coarser as usize], &levels[(coarser + 1).min(last) as usize]);
-            for (i, out) in out.iter_mut().enumerate() {
-                let colour = blend(sample(fine, us[i], vs[i]), sample(coarse, us[i], vs[i]), share);
-                *out = brighten(colour, facet.shade);
+        let here = Here::new(facet, x as f64 + 0.5, y);
+        match filter {
+            Filter::Bilinear => here.sample(facet, finest, out),
+            Filter::Mipmap => {
+                let detail = here.detail(facet, size, out.len());
+                let nearest = (detail + (1 << (DETAIL_BITS - 1))) >> DETAIL_BITS;
+                here.sample(facet, &levels[nearest.clamp(0, last) as usize], out);
             }
-        } else {
-            let level = &levels[((detail + (1 << (DETAIL_BITS - 1))) >> DETAIL_BITS).clamp(0, last) as usize];
-            sample_span(level, us, vs, facet.shade, out);
+            Filter::Trilinear => {
+                let detail = here.detail(facet, size, out.len()).clamp(0, last << DETAIL_BITS);
+                let finer = detail >> DETAIL_BITS;
+                let share = (detail >> (DETAIL_BITS - 8)) as u32 & 0xff;
+                here.sample(facet, &levels[finer as usize], out);
+                let mut coarse = [0; SPAN];
+                here.sample(facet, &levels[(finer + 1).min(last) as usize], &mut coarse[..out.len()]);
+                for (out, coarse) in out.iter_mut().zip(coarse) {
+                    *out = blend(*out, coarse, share);
+                }
+            }
+        }
+        for out in out {
+            *out = brighten(*out, facet.shade);
         }
     }
 }
@@ -131,23 +137,6 @@ impl Here {
         Self { inverse_depth, u, v, u_step: facet.u[0] - u * slope, v_step: facet.v[0] - v * slope }
     }
 
-    /// Exact for each pixel: from the first one's u, i pixels on it has grown by i·u_step over the inverse depth
-    /// there. Differences are small, so single precision is ample for them.
-    #[inline(always)]
-    fn places(&self, facet: &Facet) -> (Places, Places) {
-        let repeat = f64::from(1_u32 << REPEAT_BITS);
-        let (u, v) = ((self.u * repeat) as i64 as u32, (self.v * repeat) as i64 as u32);
-        let (u_step, v_step) = ((self.u_step * repeat) as f32, (self.v_step * repeat) as f32);
-        let (start, slope) = (self.inverse_depth as f32, facet.inverse_depth[0] as f32);
-        let (mut us, mut vs) = ([0; SPAN], [0; SPAN]);
-        for i in 0..SPAN {
-            let along = i as f32 / (start + slope * i as f32);
-            us[i] = u.wrapping_add((along * u_step) as i32 as u32);
-            vs[i] = v.wrapping_add((along * v_step) as i32 as u32);
-        }
-        (us, vs)
-    }
-
     /// Log 2 of the texels, of a texture of this size, that the middle pixel of a span covers the longer way.
     #[inline(always)]
     fn detail(&self, facet: &Facet, size: [f64; 2], pixels: usize) -> i32 {
@@ -160,32 +149,64 @@ impl Here {
         let vy = (facet.v[1] - v * facet.inverse_depth[1]) * depth * size[1];
         let (by_x, by_y) = (ux * ux + vx * vx, uy * uy + vy * vy);
         let square = if by_x > by_y { by_x } else { by_y };
+        let square = if square < MOST_TEXELS { square } else { MOST_TEXELS };
         // The bits of a float are its logarithm, within a few hundredths; half of it for the square root.
-        ((square as f32).to_bits() as i32).wrapping_sub(1.0_f32.to_bits() as i32) >> 1
+        ((square as f32).to_bits() as i32 - 1.0_f32.to_bits() as i32) >> 1
     }
-}
 
-/// The texture between four texels, each channel to the nearest grey level.
-#[inline(always)]
-fn sample(level: &Level, u: u32, v: u32) -> Lanes {
-    let place = |coordinate: u32, log: u32| {
+    /// The texture between four texels of a level, for as many pixels as there are.
+    ///
+    /// Places are exact for each pixel: i pixels on from the first, u has grown by i·u_step over the inverse depth
+    /// there. Such differences are small: single precision is ample for them.
+    #[inline(always)]
+    fn sample(&self, facet: &Facet, level: &Level, out: &mut [Lanes]) {
+        let (log_width, log_height) = (level.log_width, level.log_height);
+        let (across, down) = (f64::from(256_u32 << log_width), f64::from(256_u32 << log_height));
         // In 256ths of a texel, from the centre of the first.
-        let fine = coordinate >> (REPEAT_BITS - 8 - log);
-        fine.wrapping_sub(128) & ((256 << log) - 1)
-    };
-    let (x, y) = (place(u, level.log_width), place(v, level.log_height));
-    let (column, row) = ((x >> 8) as usize, (y >> 8) as usize);
-    let stride = level.stride();
-    let corner = row * stride + column;
-    let Some(near) = level.texels.get(corner..corner + stride + 2) else { return 0 };
-    let below = blend(near[0], near[1], x & 0xff);
-    let above = blend(near[stride], near[stride + 1], x & 0xff);
-    blend(below, above, y & 0xff)
+        let first_x = (self.u * across) as i64 as u32;
+        let first_y = (self.v * down) as i64 as u32;
+        let (first_x, first_y) = (first_x.wrapping_sub(128), first_y.wrapping_sub(128));
+        let (x_step, y_step) = ((self.u_step * across) as f32, (self.v_step * down) as f32);
+        let (start, slope) = (self.inverse_depth as f32, facet.inverse_depth[0] as f32);
+        let (x_mask, y_mask) = ((256 << log_width) - 1, (256 << log_height) - 1);
+        let (mut corners, mut rights, mut ups) = ([0_u32; SPAN], [0_u32; SPAN], [0_u32; SPAN]);
+        for i in 0..SPAN {
+            let inverse_depth = start + slope * ALONG[i];
+            let inverse_depth = if inverse_depth > facet.farthest { inverse_depth } else { facet.farthest };
+            let along = ALONG[i] / inverse_depth;
+            let x = first_x.wrapping_add(whole(along * x_step)) & x_mask;
+            let y = first_y.wrapping_add(whole(along * y_step)) & y_mask;
+            let row = y >> 8;
+            corners[i] = (row << log_width) + row + (x >> 8);
+            rights[i] = x & 0xff;
+            ups[i] = y & 0xff;
+        }
+        let stride = level.stride();
+        let texels = level.texels.as_slice();
+        for (((out, corner), right), up) in out.iter_mut().zip(corners).zip(rights).zip(ups) {
+            let Some(near) = texels.get(corner as usize..corner as usize + stride + 2) else { continue };
+            let below = blend(near[0], near[1], right);
+            let above = blend(near[stride], near[stride + 1], right);
+            *out = blend(below, above, up);
+        }
+    }
 }
 
+/// More texels a pixel, squared, than any texture has.
+const MOST_TEXELS: f64 = 1e30;
+
+/// The numbers of a span's pixels.
+const ALONG: [f32; SPAN] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// The nearest whole number, modulo 2³², of one that is not beyond ±2²²; else some number.
+///
+/// The sum has its last bit worth one, so its bits are those of the number, whose lowest count: unlike a
+/// conversion, which saturates, this takes no branch.
 #[inline(always)]
-fn sample_span(level: &Level, us: Places, vs: Places, shade: u32, out: &mut [Lanes]) {
-    for (i, out) in out.iter_mut().enumerate().take(SPAN) {
-        *out = brighten(sample(level, us[i], vs[i]), shade);
-    }
+fn whole(number: f32) -> u32 {
+    const MOST: f32 = 4_194_304.0;
+    const SHIFT: f32 = 12_582_912.0;
+    let held = if number < MOST { number } else { MOST };
+    let held = if held > -MOST { held } else { -MOST };
+    (held + SHIFT).to_bits().wrapping_sub(SHIFT.to_bits())
 }

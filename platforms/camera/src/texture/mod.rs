@@ -8,7 +8,7 @@ mod value_noise;
 use core::fmt;
 
 pub use names::NAMES;
-pub(crate) use pyramid::{Level, REPEAT_BITS};
+pub(crate) use pyramid::Level;
 pub(crate) use value_noise::mix;
 
 /// An RGB image that repeats in both directions, kept in all sizes down to a single texel so that a distant face

@@ -2,11 +2,8 @@
 
 use crate::shade::{Lanes, lanes, unlanes};
 
-/// The largest side of a level: 2 to this. It leaves 12 of [`REPEAT_BITS`] to place a sample within a texel.
+/// The largest side of a level: 2 to this.
 const LARGEST: u32 = 12;
-
-/// Texture coordinates are in 2 to the minus this of a repeat.
-pub(crate) const REPEAT_BITS: u32 = 24;
 
 /// One size of a texture. Rows are one texel longer than it is wide, and there is one row more than it is high:
 /// they hold the opposite side once more, so that four neighbours never wrap.
