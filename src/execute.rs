@@ -4,17 +4,22 @@ use crate::{
     exit::Exit,
     files, graph_file,
     report::{Findings, Refusal},
+    services::Everything,
     trace_file,
 };
 use soifra_graph::{Diagnostic, Graph, Value, span::Source};
-use soifra_platforms::sim::Simulator;
+use soifra_platforms::sim::{Simulator, camera::Rendered};
 use soifra_runtime::{Engine, Mission, NoTrace, Outcome, Pacer, RunReport, Scene, Settings, TraceSink};
-use std::{collections::BTreeMap, sync::atomic::AtomicBool};
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, atomic::AtomicBool},
+};
 
 /// Compiles the code of a graph.
 pub fn load(graph: Graph) -> Result<Mission, Refusal> {
     let sources = graph.sources.clone();
-    Mission::load(graph).map_err(|diagnostics| refuse(diagnostics, sources))
+    let mission = Mission::load(graph).map_err(|diagnostics| refuse(diagnostics, sources))?;
+    Ok(mission.with_services(Arc::new(Everything)).with_cameras(Arc::new(Rendered)))
 }
 
 /// Settings for one run.
@@ -60,7 +65,8 @@ impl<'m> Prepared<'m> {
         pacer: Option<&mut dyn Pacer>,
     ) -> Result<RunReport, Refusal> {
         let sources = || self.mission.graph().sources.clone();
-        let mut simulator = Simulator::new(&self.scene).map_err(|why| self.not_simulated(why))?;
+        let mut simulator = Simulator::with_threads(&self.scene, self.settings.threads)
+            .map_err(|why| self.not_simulated(why))?;
         let engine = Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, sink, stop);
         let mut engine = engine.map_err(|d| refuse(vec![d], sources()))?;
         if let Some(pacer) = pacer {

@@ -23,6 +23,7 @@ pub mod realtime;
 pub mod relative;
 pub mod report;
 pub mod seeds;
+mod services;
 pub mod statistics;
 pub mod sweep;
 pub mod trace_file;

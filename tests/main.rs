@@ -2,6 +2,7 @@
 
 mod agents;
 mod bars;
+mod camera;
 mod cli;
 mod corpus;
 mod fuzz;

@@ -4,7 +4,7 @@ use super::replay::unreadable;
 use crate::{
     exit::Exit,
     files, output,
-    plot::{self, Drawing, Gantt, SelectError, Selection, Sequence},
+    plot::{self, Drawing, Gantt, SelectError, Selection, Sequence, Sheet},
     report::Refusal,
     trace_file::Reader,
 };
@@ -33,7 +33,7 @@ pub struct Arguments {
     /// End at this instant [default: the end; of a schedule, 60 releases of its most frequent unit]
     #[arg(long, value_name = "T", value_parser = instant)]
     to: Option<Time>,
-    /// Draw at most so many rows of messages, or lanes of units [default: 400]
+    /// Draw at most so many rows of messages, lanes of units [default: 400] or images [default: 24]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     limit: Option<u32>,
     /// The picture: .svg, .png, for messages also .mmd [default: two of them, beside the trace]
@@ -51,6 +51,8 @@ enum Kind {
     Sequence,
     /// The schedule: which unit ran when on which core
     Gantt,
+    /// The contact sheet: what cameras saw
+    Frames,
 }
 
 /// The form of a picture, by the ending of its file.
@@ -65,12 +67,15 @@ enum Form {
 enum Picture {
     Drawing(Drawing),
     Sequence(Sequence),
+    Sheet(Sheet),
 }
 
 /// Width of a PNG in pixels.
 const WIDTH: u32 = 1600;
 /// Rows or lanes that are drawn when nobody says how many.
 const LIMIT: u32 = 400;
+/// Images that are shown when nobody says how many.
+const FRAMES: u32 = 24;
 
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
@@ -82,12 +87,17 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
             (Picture::Sequence(chart), Form::Mermaid) => chart.mermaid().into_bytes(),
             (Picture::Sequence(chart), _) => painted(&chart.drawing(), path, *form)?,
             (Picture::Drawing(drawing), _) => painted(drawing, path, *form)?,
+            (Picture::Sheet(sheet), _) => sheet.to_png().map_err(|e| {
+                let hint = "choose fewer images: `--limit 8`";
+                Refusal::about(path, "S9012", "the picture cannot be drawn", e.to_string(), hint)
+            })?,
         };
         files::keep_apart(&a.trace, path)?;
         files::write(path, &bytes)?;
     }
     if let Some(rest) = rest {
-        output::note(&format!("{}: {rest}; `--limit N` draws more", a.trace));
+        let more = if a.kind == Kind::Frames { "" } else { "; `--limit N` draws more" };
+        output::note(&format!("{}: {rest}{more}", a.trace));
     }
     output::print(&outputs.iter().map(|(path, _)| format!("{path}\n")).collect::<String>())?;
     Ok(Exit::Success)
@@ -96,10 +106,11 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 impl Arguments {
     /// Refuses options that say nothing to the kind of picture that is wanted.
     fn fits(&self) -> Result<(), Refusal> {
-        let (top, gantt) = (self.kind == Kind::Top, self.kind == Kind::Gantt);
+        let (top, frames) = (self.kind == Kind::Top, self.kind == Kind::Frames);
+        let messages = self.kind == Kind::Sequence;
         let wrong = [
-            ("--agent", !self.agent.is_empty() && top),
-            ("--conversation", !self.conversation.is_empty() && (top || gantt)),
+            ("--agent", !self.agent.is_empty() && (top || frames)),
+            ("--conversation", !self.conversation.is_empty() && !messages),
             ("--from", self.from.is_some() && top),
             ("--to", self.to.is_some() && top),
             ("--limit", self.limit.is_some() && top),
@@ -109,6 +120,7 @@ impl Arguments {
                 Kind::Top => {
                     ("the top view shows the whole run", "choose `--kind sequence` or `--kind gantt`")
                 }
+                Kind::Frames => ("images are of no agent", "choose `--kind sequence` or `--kind gantt`"),
                 _ => ("a schedule has no messages", "choose `--kind sequence`"),
             };
             return Err(Refusal::about(option, "S9024", "the option does not go with this kind", seen, hint));
@@ -128,24 +140,30 @@ impl Arguments {
     /// The files to write.
     fn outputs(&self) -> Result<Vec<(String, Form)>, Refusal> {
         let stem = self.trace.strip_suffix(".mcap").unwrap_or(&self.trace);
+        let sheet = [format!("{stem}-frames.png")];
         let beside = match self.kind {
             Kind::Top => [format!("{stem}.svg"), format!("{stem}.png")],
             Kind::Sequence => [format!("{stem}-sequence.svg"), format!("{stem}-sequence.mmd")],
-            Kind::Gantt => [format!("{stem}-gantt.svg"), format!("{stem}-gantt.png")],
+            Kind::Gantt | Kind::Frames => [format!("{stem}-gantt.svg"), format!("{stem}-gantt.png")],
         };
-        let paths = if self.output.is_empty() { &beside[..] } else { &self.output };
+        let frames = self.kind == Kind::Frames;
+        let paths = match self.output.as_slice() {
+            [] if frames => &sheet[..],
+            [] => &beside[..],
+            given => given,
+        };
         let form = |path: &String| {
             let lower = path.to_ascii_lowercase();
             let mermaid = self.kind == Kind::Sequence;
             let form = match lower.rsplit_once('.').map_or("", |(_, ending)| ending) {
-                "svg" => Form::Svg,
+                "svg" if !frames => Form::Svg,
                 "png" => Form::Png,
                 "mmd" | "mermaid" if mermaid => Form::Mermaid,
                 _ => {
-                    let hint = if mermaid {
-                        "end its name in .svg, .png or .mmd"
-                    } else {
-                        "end its name in .svg or .png"
+                    let hint = match self.kind {
+                        Kind::Sequence => "end its name in .svg, .png or .mmd",
+                        Kind::Frames => "end its name in .png",
+                        _ => "end its name in .svg or .png",
                     };
                     let seen = "this is no kind of picture";
                     return Err(Refusal::about(path, "S9012", "the file cannot be written", seen, hint));
@@ -160,7 +178,8 @@ impl Arguments {
     fn picture(&self) -> Result<(Picture, Option<String>), Refusal> {
         let unreadable = |e| unreadable(&self.trace, &e);
         let selection = self.selection()?;
-        let limit = self.limit.unwrap_or(LIMIT) as usize;
+        let most = if self.kind == Kind::Frames { FRAMES } else { LIMIT };
+        let limit = self.limit.unwrap_or(most) as usize;
         let reader = Reader::open(&self.trace).map_err(unreadable)?;
         Ok(match self.kind {
             Kind::Top => (Picture::Drawing(plot::top_view_of(reader).map_err(unreadable)?), None),
@@ -168,6 +187,11 @@ impl Arguments {
                 let chart = Sequence::read(reader, &selection, limit).map_err(unreadable)?;
                 let rest = chart.rest();
                 (Picture::Sequence(chart), rest)
+            }
+            Kind::Frames => {
+                let sheet = Sheet::read(reader, &selection, limit).map_err(unreadable)?;
+                let rest = sheet.rest();
+                (Picture::Sheet(sheet), rest)
             }
             Kind::Gantt => {
                 let gantt = Gantt::read(reader, &selection, limit).map_err(unreadable)?;

@@ -153,7 +153,7 @@ fn replay<'r>(
     } else {
         match mission.scene(settings) {
             Ok(scene) => {
-                let mut simulator = Simulator::new(&scene).map_err(|why| {
+                let mut simulator = Simulator::with_threads(&scene, settings.threads).map_err(|why| {
                     Refusal::about(
                         &a.trace,
                         "S9020",

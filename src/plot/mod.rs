@@ -3,6 +3,7 @@
 mod axis;
 mod drawing;
 mod font;
+mod frames;
 mod gantt;
 mod page;
 mod png;
@@ -12,6 +13,7 @@ mod svg;
 mod top;
 
 pub use drawing::Drawing;
+pub use frames::Sheet;
 pub use gantt::Gantt;
 pub use png::PngError;
 pub use selection::{Conversation, SelectError, Selection};

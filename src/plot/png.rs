@@ -13,6 +13,13 @@ const MAX_PIXELS: u32 = 16_384;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PngError(String);
 
+impl PngError {
+    /// With the reason why there is no picture.
+    pub(super) fn new(why: &str) -> PngError {
+        PngError(why.to_string())
+    }
+}
+
 impl fmt::Display for PngError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)

@@ -20,11 +20,15 @@ pub struct Model {
 /// Roles whose entries have a name (`sensor ir = …`); all others stand alone (`body = …`).
 pub const NAMED_ROLES: &[&str] =
     &["sensor", "actuator", "wall", "obstacle", "region", "mover", "parcel", "material", "topic"];
+/// Textures of surfaces that need no material of a world: names of the camera's patterns.
+pub const TEXTURES: &[&str] =
+    &["plaster", "bricks", "planks", "tiles", "checker", "speckle", "concrete", "carpet"];
 /// Roles a platform profile has.
 pub const PLATFORM_ROLES: &[&str] =
     &["body", "drive", "cruise", "power", "sensor", "actuator", "safe", "prepare", "finish"];
 /// Roles a world has.
-pub const WORLD_ROLES: &[&str] = &["bounds", "wall", "obstacle", "region", "mover", "parcel", "material"];
+pub const WORLD_ROLES: &[&str] =
+    &["bounds", "floor", "light", "wall", "obstacle", "region", "mover", "parcel", "material"];
 /// Roles a mission or test has besides those of its world.
 pub const FAULT_ROLES: &[&str] = &["fault"];
 
@@ -87,6 +91,11 @@ const TABLE: &[(&str, &str, &str)] = &[
     ),
     (
         "sensor",
+        "camera(width: Int, height: Int, field_of_view: Angle, at: Vector<base_link>, period: Duration, latency: Duration = 0 s, tilt: Angle = 0, noise: Number = 0.008, gain: Number = 1, k1: Number = 0, k2: Number = 0) -> Image",
+        "RGB images of the world from `at` on the robot, looking ahead and `tilt` down; the field of view is that of a row. Noise is the standard deviation of every channel, relative to white; gain is the exposure; k1 and k2 are the radial distortion of the lens. Without anybody who reads it nothing is rendered",
+    ),
+    (
+        "sensor",
         "encoders(pulse: Length, period: Duration, latency: Duration = 0 s) -> Encoders",
         "Pulses counted at each wheel since the start",
     ),
@@ -138,6 +147,16 @@ const TABLE: &[(&str, &str, &str)] = &[
     ("finish", "land()", "Come down where it is"),
     ("bounds", "rectangle(low: Point<map>, high: Point<map>)", "The ground that pictures show; no wall"),
     (
+        "floor",
+        "plane(material: Text = \"concrete\")",
+        "The ground that cameras see, under the bounds and 20 m around them",
+    ),
+    (
+        "light",
+        "lamp(ambient: Number = 0.45, strength: Number = 0.55, azimuth: Heading<map> = 1, elevation: Angle = 0.9, gain: Number = 1)",
+        "What cameras see by: the share of its colour that every face shows, what a face turned at the lamp shows in addition, where the lamp stands, and a factor for all of it",
+    ),
+    (
         "wall",
         "segment(from: Point<map>, to: Point<map>, height: Length = 50 cm, thickness: Length = 1 cm, material: Text = \"plaster\")",
         "A straight wall, centred on the segment",
@@ -173,6 +192,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "material",
         "plain(color: Text, reflectance: Number = 0.8)",
         "A colour, as #rrggbb, and how much infrared it reflects",
+    ),
+    (
+        "material",
+        "textured(texture: Text, repeat: Length = 1 m, reflectance: Number = 0.8)",
+        "A pattern: `plaster`, `bricks`, `planks`, `tiles`, `checker`, `speckle`, `concrete` or `carpet`, that comes again after `repeat`, and how much infrared it reflects",
     ),
     (
         "topic",

@@ -34,7 +34,10 @@ const RULES: &[(&str, Must)] = &[
     ("drag", Must::NotBeNegative),
     ("duration", Must::BeAPeriod),
     ("false_alarm", Must::BeAChance),
+    ("ambient", Must::NotBeNegative),
     ("field", Must::AscendWithinATurn),
+    ("field_of_view", Must::BeAtMostHalfATurn),
+    ("gain", Must::NotBeNegative),
     ("height", Must::BePositive),
     ("from", Must::NotBeNegative),
     ("keep_out", Must::NotBeNegative),
@@ -54,8 +57,10 @@ const RULES: &[(&str, Must)] = &[
     ("radius", Must::BePositive),
     ("range", Must::AscendFromZero),
     ("reflectance", Must::BeAChance),
+    ("repeat", Must::BePositive),
     ("size", Must::BePositive),
     ("speed", Must::NotBeNegative),
+    ("strength", Must::NotBeNegative),
     ("thickness", Must::BePositive),
     ("turn_lag", Must::NotBeNegative),
     ("turn_period", Must::BeAPeriod),
@@ -63,6 +68,7 @@ const RULES: &[(&str, Must)] = &[
     ("wheel_acceleration", Must::BePositive),
     ("wheel_base", Must::BePositive),
     ("wheel_radius", Must::BePositive),
+    ("width", Must::BePositive),
 ];
 
 /// The shortest period, in seconds.

@@ -6,6 +6,7 @@
 
 mod args;
 mod body;
+pub mod camera;
 mod cargo;
 mod collision;
 mod flight;
@@ -21,6 +22,7 @@ mod sensors;
 mod truth;
 
 use body::Body;
+use camera::{Cameraman, Studio};
 use cargo::Cargo;
 use collision::Collisions;
 use motion::{Drive, Stride};
@@ -66,6 +68,8 @@ pub struct Simulator {
     batteries: Vec<Option<Battery>>,
     /// By platform.
     endings: Vec<Endings>,
+    /// Where somebody reads a camera.
+    cameraman: Option<Cameraman>,
 }
 
 /// What an actuator does with a command.
@@ -88,6 +92,11 @@ enum Actuator {
 impl Simulator {
     /// Builds the simulation of a scene. The error says which part of the scene cannot be simulated and why.
     pub fn new(scene: &Scene) -> Result<Simulator, String> {
+        Simulator::with_threads(scene, 1)
+    }
+
+    /// As [`Simulator::new`], with so many threads at most. They change nothing but the speed.
+    pub fn with_threads(scene: &Scene, threads: usize) -> Result<Simulator, String> {
         // The platform of hosts has no parts, and comes last.
         let bodied = scene.platforms.iter().take_while(|p| !p.parts.is_empty());
         let chassis = bodied.map(scene::chassis).collect::<Result<Vec<_>, _>>()?;
@@ -97,6 +106,7 @@ impl Simulator {
         let population = scene::population(scene, &chassis)?;
         let platforms: Vec<u32> = scene.bodies().iter().map(|r| r.platform).collect();
         let endings = scene::endings(&scene.platforms);
+        let studio = Studio::of(scene, &population.bodies)?;
         let twists = |i: &u32| {
             let platform = platforms[*i as usize] as usize;
             actuators[platform].contains(&Actuator::Twist) || chassis[platform].drive.flies()
@@ -117,6 +127,7 @@ impl Simulator {
             actuators,
             platforms,
             endings,
+            cameraman: studio.map(|s| Cameraman::new(s, threads)),
         };
         simulator.prepare();
         Ok(simulator)
@@ -190,7 +201,15 @@ impl Simulator {
             }
             self.extend(t);
             if t == capture {
-                self.schedule.capture(Time(t), &self.bodies, &self.drives, &self.things, &self.cargo);
+                let cameraman = self.cameraman.as_ref();
+                self.schedule.capture(
+                    Time(t),
+                    &self.bodies,
+                    &self.drives,
+                    &self.things,
+                    &self.cargo,
+                    cameraman,
+                );
             }
             if t == look {
                 self.looked = t;
@@ -239,7 +258,7 @@ impl Platform for Simulator {
         self.advance(now);
         self.collisions.sweep(&self.bodies, &self.things, now);
         self.collisions.take(reports);
-        self.schedule.deliver(Time(now), readings);
+        self.schedule.deliver(Time(now), readings, &mut self.cameraman);
     }
 
     fn advance(&mut self, now: Time) {

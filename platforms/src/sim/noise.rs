@@ -18,6 +18,11 @@ fn fnv1a(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
+/// A number for a source in the run with this seed, for noise that is no stream.
+pub fn source(seed: u64, source: &str) -> u64 {
+    fnv1a(source).rotate_left(17) ^ seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
 impl Stream {
     /// The stream of `source` in the run with this seed.
     pub fn new(seed: u64, source: &str) -> Stream {

@@ -119,7 +119,7 @@ fn reflectances(scene: &Scene) -> Result<BTreeMap<&str, f64>, String> {
     materials.map(|part| Ok((part.name.as_str(), Args { part, of: WORLD }.chance("reflectance")?))).collect()
 }
 
-fn bounds(scene: &Scene) -> Result<Option<Aabb>, String> {
+pub fn bounds(scene: &Scene) -> Result<Option<Aabb>, String> {
     let Some(part) = scene.world.iter().find(|p| &*p.role == "bounds") else { return Ok(None) };
     let args = Args { part, of: WORLD };
     let (low, high) = (args.vector("low")?, args.vector("high")?);

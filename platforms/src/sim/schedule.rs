@@ -3,13 +3,14 @@
 use super::{
     args::Args,
     body::Body,
+    camera::{Cameraman, Order, Taking},
     cargo::Cargo,
     motion::Drive,
     scene::{Chassis, Things},
     sensors::{self, Mount, Nearby, Sensor, View},
 };
 use soifra_runtime::{Reading, Readings, Scene, Time};
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 /// All sensors that somebody reads. Robots of one platform capture at the same instants, so there are no
 /// more entries here than platforms have sensors, whatever the number of robots.
@@ -43,6 +44,8 @@ struct Group {
 struct Flight {
     captured: i64,
     registers: Vec<f64>,
+    /// Images, by seat; none where readings are numbers.
+    images: Vec<Taking>,
 }
 
 impl Schedule {
@@ -100,6 +103,7 @@ impl Schedule {
         drives: &[Box<dyn Drive>],
         things: &Things,
         cargo: &Cargo,
+        cameraman: Option<&Cameraman>,
     ) {
         self.nearby.reset(self.robots);
         for group in self.groups.iter_mut().filter(|g| g.next == t.0) {
@@ -110,13 +114,23 @@ impl Schedule {
             for (seat, robot) in group.robots.iter().enumerate() {
                 group.sensor.capture(seat, *robot as usize, &view, &mut registers);
             }
-            group.flights.push_back(Flight { captured: t.0, registers });
+            let mut images = Vec::new();
+            if let Some(cameraman) = cameraman.filter(|_| group.sensor.takes_images()) {
+                let order = |robot: &u32| Order {
+                    robot: *robot,
+                    sensor: group.index,
+                    captured: t,
+                    view: cameraman.studio().view(*robot, bodies, t),
+                };
+                images.extend(group.robots.iter().map(order).map(|o| cameraman.order(o)));
+            }
+            group.flights.push_back(Flight { captured: t.0, registers, images });
             group.next = group.next.saturating_add(group.period);
         }
     }
 
     /// Hands over what is due by `now`, in order of delivery, robot, sensor.
-    pub fn deliver(&mut self, now: Time, readings: &mut Readings) {
+    pub fn deliver(&mut self, now: Time, readings: &mut Readings, cameraman: &mut Option<Cameraman>) {
         let from = readings.items.len();
         let mut flights = 0;
         for group in &mut self.groups {
@@ -138,10 +152,16 @@ impl Schedule {
                         readings.registers.len() - flight.registers.len()
                     }
                 };
+                let first = readings.images.len() as u32;
+                let takings = flight.images.drain(..);
+                let images = takings.filter_map(|taking| cameraman.as_mut()?.deliver(taking));
+                readings.images.extend(images.map(Arc::new));
+                let is_image = group.sensor.takes_images();
                 let reading = |(seat, robot): (usize, &u32)| {
                     let from = (from + seat * width) as u32;
                     let (robot, sensor, to) = (*robot, group.index, from + width as u32);
-                    Reading { robot, sensor, captured, delivered, from, to, image: None }
+                    let image = is_image.then_some(first + seat as u32);
+                    Reading { robot, sensor, captured, delivered, from, to, image }
                 };
                 readings.items.extend(group.robots.iter().enumerate().map(reading));
                 group.spare.push(flight.registers);

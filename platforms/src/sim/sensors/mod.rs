@@ -1,5 +1,6 @@
 //! Sensors: what a robot can know of the world. One file for each model.
 
+pub mod camera;
 pub mod charge;
 pub mod discs;
 pub mod encoders;
@@ -94,6 +95,10 @@ pub trait Sensor: fmt::Debug + Send {
     fn needs(&self) -> Needs {
         Needs::default()
     }
+    /// Whether its readings are images.
+    fn takes_images(&self) -> bool {
+        false
+    }
     /// Appends the registers of one reading: always the same number of them.
     fn capture(&mut self, seat: usize, robot: usize, view: &View<'_>, out: &mut Vec<f64>);
 }
@@ -123,6 +128,7 @@ impl Mount<'_> {
 pub fn build(mount: Mount<'_>) -> Result<Box<dyn Sensor>, String> {
     Ok(match &*mount.args.part.model {
         "ideal_pose" => Box::new(ideal_pose::IdealPose),
+        "camera" => Box::new(camera::Camera),
         "charge" => Box::new(charge::Charge::new(mount)?),
         "holding" => Box::new(holding::Holding),
         "discs" => Box::new(discs::Discs::new(mount)?),

@@ -1,0 +1,94 @@
+//! The contact sheet: what cameras saw, one image beside the other.
+
+use super::{PngError, Selection};
+use crate::trace_file::{Reader, TraceError};
+use soifra_platforms::sim::camera::Rendered;
+use soifra_runtime::{
+    Event, Time,
+    objects::{Cameras, Frame},
+};
+use std::io::{Read, Seek};
+use tiny_skia::{Color, IntSize, Pixmap, PixmapPaint, Transform};
+
+/// Images a row.
+const COLUMNS: usize = 4;
+/// Width of an image on the sheet, pixels.
+const WIDTH: u32 = 480;
+/// Between two.
+const GAP: u32 = 8;
+
+/// Images of a trace, evenly spaced, in order of time.
+pub struct Sheet {
+    frames: Vec<Frame>,
+    /// How many were taken in all.
+    all: usize,
+}
+
+/// An image of a trace.
+struct Taken {
+    robot: u32,
+    sensor: u32,
+    captured: Time,
+    view: Vec<f64>,
+}
+
+impl Sheet {
+    /// Takes so many images of a trace again.
+    pub fn read<R: Read + Seek>(
+        mut reader: Reader<R>,
+        selection: &Selection,
+        limit: usize,
+    ) -> Result<Sheet, TraceError> {
+        let mut taken = Vec::new();
+        for record in reader.by_ref() {
+            let record = record?;
+            if let Event::Image { robot, sensor, captured, view, .. } = record.event
+                && selection.from.is_none_or(|t| t <= captured)
+                && selection.to.is_none_or(|t| captured <= t)
+            {
+                taken.push(Taken { robot, sensor, captured, view });
+            }
+        }
+        let all = taken.len();
+        let some = limit.min(all);
+        let chosen = (0..some).filter_map(|i| taken.get(i * all / some.max(1)));
+        let mut cameras = Rendered.of(&reader.header().scene);
+        let frame = |t: &Taken| {
+            let image = cameras.as_mut()?.retake(t.robot, t.sensor, t.captured, &t.view)?;
+            Some(Frame::clone(&image))
+        };
+        Ok(Sheet { frames: chosen.filter_map(frame).collect(), all })
+    }
+
+    /// What is said of those that are not shown, and when the others were taken.
+    pub fn rest(&self) -> Option<String> {
+        let times = self.frames.iter().map(|f| format!("{:.2}", f.captured.seconds()));
+        let times = times.collect::<Vec<_>>().join(", ");
+        match self.all {
+            0 => Some("no camera was read".into()),
+            all => Some(format!("{} of {all} images, at {times} s", self.frames.len())),
+        }
+    }
+
+    /// The sheet.
+    pub fn to_png(&self) -> Result<Vec<u8>, PngError> {
+        let scaled = |f: &Frame| (f.height as f32 * WIDTH as f32 / f.width.max(1) as f32).ceil() as u32;
+        let row = self.frames.iter().map(scaled).max().unwrap_or(0) + GAP;
+        let (columns, rows) =
+            (self.frames.len().clamp(1, COLUMNS) as u32, self.frames.len().div_ceil(COLUMNS) as u32);
+        let (width, height) = (columns * (WIDTH + GAP) + GAP, rows * row + GAP);
+        let mut sheet = Pixmap::new(width, height).ok_or_else(|| PngError::new("the sheet is too large"))?;
+        sheet.fill(Color::WHITE);
+        for (i, frame) in self.frames.iter().enumerate() {
+            let (x, y) = ((i % COLUMNS) as u32 * (WIDTH + GAP) + GAP, (i / COLUMNS) as u32 * row + GAP);
+            let rgba: Vec<u8> = frame.data.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect();
+            let size = IntSize::from_wh(frame.width, frame.height);
+            let Some(image) = size.and_then(|s| Pixmap::from_vec(rgba, s)) else { continue };
+            let scale = WIDTH as f32 / frame.width as f32;
+            let to = Transform::from_scale(scale, scale).post_translate(x as f32, y as f32);
+            let paint = PixmapPaint { quality: tiny_skia::FilterQuality::Bilinear, ..PixmapPaint::default() };
+            sheet.draw_pixmap(0, 0, image.as_ref(), &paint, to, None);
+        }
+        sheet.encode_png().map_err(|e| PngError::new(&e.to_string()))
+    }
+}

@@ -1,0 +1,34 @@
+//! What missions call services for: functions that the runtime's machine does not compute itself.
+
+use soifra_graph::{Function, eval::FaultKind};
+use soifra_runtime::objects::{Frame, Services, Shelf};
+
+/// All services of this program.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Everything;
+
+impl Services for Everything {
+    fn call(
+        &self,
+        which: Function,
+        args: &[f64],
+        shelf: &mut dyn Shelf,
+        out: &mut [f64],
+    ) -> Result<(), FaultKind> {
+        match (which, args, out) {
+            (Function::Brightness, [image], [out]) => {
+                let image = shelf.get(*image).ok_or(FaultKind::Unavailable("this image"))?;
+                let frame = image.as_any().downcast_ref::<Frame>().ok_or(FaultKind::Malformed)?;
+                *out = brightness(frame);
+                Ok(())
+            }
+            _ => Err(FaultKind::Unavailable("this service")),
+        }
+    }
+}
+
+/// The mean of all channels, 0 to 1.
+fn brightness(frame: &Frame) -> f64 {
+    let sum: u64 = frame.data.iter().map(|b| u64::from(*b)).sum();
+    sum as f64 / (255.0 * frame.data.len().max(1) as f64)
+}
