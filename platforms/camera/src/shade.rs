@@ -16,13 +16,20 @@ pub(crate) const BYTES: Lanes = 0x00ff_00ff_00ff;
 /// A half, in 256ths, of each channel.
 pub(crate) const HALVES: Lanes = 0x0080_0080_0080;
 
+/// A texel's colour.
+#[inline(always)]
+pub(crate) fn spread(texel: u32) -> Lanes {
+    let texel = u64::from(texel);
+    (texel & 0x00ff_00ff) | (texel & 0xff00) << 24
+}
+
 pub(crate) fn lanes([r, g, b]: [u8; 3]) -> Lanes {
-    u64::from(r) | u64::from(g) << 16 | u64::from(b) << 32
+    u64::from(r) | u64::from(b) << 16 | u64::from(g) << 32
 }
 
 #[inline(always)]
 pub(crate) fn unlanes(colour: Lanes) -> [u8; 3] {
-    [colour as u8, (colour >> 16) as u8, (colour >> 32) as u8]
+    [colour as u8, (colour >> 32) as u8, (colour >> 16) as u8]
 }
 
 /// A colour times 256ths, saturating.
@@ -79,7 +86,7 @@ fn run_of(facet: &Facet, texture: &Texture, x: usize, y: usize, filter: Filter, 
     let [finest, .., _] = levels else {
         // One colour all over.
         let colour = levels.first().and_then(|level| level.texels.first());
-        out.fill(brighten(colour.copied().unwrap_or(0), facet.shade));
+        out.fill(brighten(colour.map_or(0, |texel| spread(*texel)), facet.shade));
         return;
     };
     let (width, height) = finest.size();
@@ -185,8 +192,8 @@ impl Here {
         let texels = level.texels.as_slice();
         for (((out, corner), right), up) in out.iter_mut().zip(corners).zip(rights).zip(ups) {
             let Some(near) = texels.get(corner as usize..corner as usize + stride + 2) else { continue };
-            let below = blend(near[0], near[1], right);
-            let above = blend(near[stride], near[stride + 1], right);
+            let below = blend(spread(near[0]), spread(near[1]), right);
+            let above = blend(spread(near[stride]), spread(near[stride + 1]), right);
             *out = blend(below, above, up);
         }
     }

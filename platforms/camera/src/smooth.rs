@@ -32,11 +32,30 @@ pub(crate) fn write(strip: &Strip, facets: &[Facet], from: usize, bytes: &mut [u
                 let (left, right) = (&here[x - 1..end - 1], &here[x + 1..end + 1]);
                 uniform(&here[x..end], left, right, &above[x..end], &below[x..end])
             };
-            for ((x, colour), bytes) in (x..end).zip(&colours[x..end]).zip(bytes.chunks_exact_mut(3)) {
+            let colours = &colours[x..end];
+            if let (true, Ok(colours), Ok(bytes)) = (plain, colours.try_into(), bytes.as_mut().try_into()) {
+                pack(colours, bytes);
+                continue;
+            }
+            for ((x, colour), bytes) in (x..end).zip(colours).zip(bytes.chunks_exact_mut(3)) {
                 let colour = if plain { *colour } else { mixed(strip, facets, row, x) };
                 bytes.copy_from_slice(&unlanes(colour));
             }
         }
+    }
+}
+
+/// Bytes of a group, three words at a time.
+#[inline(always)]
+fn pack(colours: &[Lanes; GROUP], bytes: &mut [u8; 3 * GROUP]) {
+    let [a, b, c, d, e, f, g, h] = colours.map(|colour| {
+        let [r, g, b] = unlanes(colour);
+        u64::from(r) | u64::from(g) << 8 | u64::from(b) << 16
+    });
+    let words = [a | b << 24 | c << 48, c >> 16 | d << 8 | e << 32 | f << 56, f >> 8 | g << 16 | h << 40];
+    let (eights, _) = bytes.as_chunks_mut::<8>();
+    for (eight, word) in eights.iter_mut().zip(words) {
+        *eight = word.to_le_bytes();
     }
 }
 
