@@ -20,6 +20,12 @@ pub(crate) const SUBPIXELS: i32 = 256;
 /// Pixels from the image's origin beyond which outlines are cut, so that fixed point does not overflow.
 const GUARD: f64 = 131_072.0;
 
+/// A facet whose functions are steeper is not drawn: nothing that is computed of smaller ones overflows.
+const STEEPEST: f64 = 1e100;
+
+/// Metres beyond which all depths are alike.
+const FARTHEST: f64 = 1e9;
+
 /// `[a, b, c]` stands for a·x + b·y + c at the pixel coordinates (x, y).
 pub(crate) type Linear = [f64; 3];
 
@@ -192,7 +198,7 @@ impl Facet {
         let inverse_depth = weighted([1.0; 3]);
         let normal = cross(subtract(b, a), subtract(c, a));
         let length = dot(normal, normal).sqrt();
-        let finite = [u, v, inverse_depth].iter().chain(&sides).flatten().all(|c| c.is_finite());
+        let finite = [u, v, inverse_depth].iter().chain(&sides).flatten().all(|c| c.abs() < STEEPEST);
         if !(finite && length.is_finite() && length > 0.0) {
             return None;
         }
@@ -206,7 +212,7 @@ impl Facet {
             let [x, y] = optics.project(*corner).map(to_subpixels);
             (left, right, top, bottom) = (left.min(x), right.max(x), top.min(y), bottom.max(y));
             *snapped = [x, y];
-            let inverse = 1.0 / corner[2];
+            let inverse = 1.0 / if corner[2] < FARTHEST { corner[2] } else { FARTHEST };
             farthest = if inverse < farthest { inverse } else { farthest };
             nearest = if inverse > nearest { inverse } else { nearest };
         }

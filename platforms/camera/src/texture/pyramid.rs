@@ -1,5 +1,7 @@
 //! A texture in all its sizes, laid out for the sampler.
 
+use crate::colour::{Colour, opaque, rgb};
+
 /// The largest side of a level: 2 to this.
 const LARGEST: u32 = 12;
 
@@ -11,7 +13,7 @@ pub(crate) struct Level {
     pub log_width: u32,
     pub log_height: u32,
     /// Bottom row first: v goes up.
-    pub texels: Vec<u32>,
+    pub texels: Vec<Colour>,
 }
 
 impl Level {
@@ -56,12 +58,6 @@ pub(crate) fn build(width: usize, height: usize, rgb: &[u8]) -> Vec<Level> {
         levels.push(lay_out(&fine));
     }
     levels
-}
-
-/// Red, green and blue of a texel.
-fn rgb(texel: u32) -> [u8; 3] {
-    let [r, g, b, _] = texel.to_le_bytes();
-    [r, g, b]
 }
 
 fn log_of_side(pixels: usize) -> u32 {
@@ -130,8 +126,7 @@ fn lay_out(fine: &Fine) -> Level {
         // Images have their top row first, textures their bottom row.
         let row = height - 1 - y % height;
         let colour = fine.colours[(row << fine.log_width) + x % width];
-        let [r, g, b] = colour.map(|c| ((c + SIXTEENTHS / 2) / SIXTEENTHS) as u8);
-        u32::from_le_bytes([r, g, b, 0])
+        opaque(colour.map(|c| ((c + SIXTEENTHS / 2) / SIXTEENTHS) as u8))
     };
     let texels =
         (0..=height).flat_map(|y| (0..=width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
