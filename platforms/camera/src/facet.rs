@@ -53,7 +53,7 @@ pub(crate) struct Facet {
     count: usize,
     /// First row that it may cover, and the one after the last.
     pub rows: (i32, i32),
-    /// One for each side: its share of the corner opposite over depth; negative beyond that side.
+    /// One for each side: how many pixels within it; negative beyond.
     pub sides: [Linear; 3],
     /// One over depth in metres.
     pub inverse_depth: Linear,
@@ -224,7 +224,7 @@ impl Facet {
             corners: snapped,
             count: outline.corners().len(),
             rows,
-            sides,
+            sides: sides.map(in_pixels),
             inverse_depth,
             farthest: farthest as f32,
             nearest: nearest as f32,
@@ -238,9 +238,20 @@ impl Facet {
     }
 }
 
+/// The same line, at which the function is zero, with a slope of one a pixel.
+fn in_pixels(side: Linear) -> Linear {
+    let slope = (side[0] * side[0] + side[1] * side[1]).sqrt();
+    if slope > 0.0 { side.map(|c| c / slope) } else { side }
+}
+
+/// To whole [`SUBPIXELS`].
 fn to_subpixels(pixels: f64) -> i32 {
+    // Outlines are cut at the guard: this only holds what rounding or an odd lens leaves beyond it.
+    const LIMIT: f64 = 2.0 * GUARD;
+    let held = if pixels < LIMIT { pixels } else { LIMIT };
+    let held = if held > -LIMIT { held } else { -LIMIT };
     // Rounded by truncation of a positive number: `floor` is a call where the instruction set has none.
-    ((pixels + 2.0 * GUARD) * f64::from(SUBPIXELS) + 0.5) as i32 - 2 * GUARD as i32 * SUBPIXELS
+    ((held + LIMIT) * f64::from(SUBPIXELS) + 0.5) as i32 - LIMIT as i32 * SUBPIXELS
 }
 
 /// The first pixel whose centre is at or after a place in [`SUBPIXELS`].

@@ -118,15 +118,17 @@ fn share(own: Option<&Facet>, other: Option<&Facet>, centre: [f64; 2], toward: [
     ((0.5 - way) * f64::from(WHOLE) + 0.5) as u32
 }
 
+/// Pixels by which a centre may seem to be on the other side of an edge: corners were rounded when it was decided.
+const TRACE: f64 = 1.0 / 64.0;
+
 /// How far on the way from inside a facet to outside its edge is, and which edge.
 fn leave(facet: &Facet, inside: [f64; 2], outside: [f64; 2]) -> Option<(f64, Linear)> {
     let mut first = None;
     for side in &facet.sides {
         let beyond = at(side, outside[0], outside[1]);
-        if beyond < 0.0 {
-            let within = at(side, inside[0], inside[1]);
-            // Corners are rounded: a pixel's centre may be outside by a trace.
-            let way = if within > 0.0 { within / (within - beyond) } else { 0.0 };
+        let within = at(side, inside[0], inside[1]);
+        if beyond < TRACE && beyond < within {
+            let way = (within / (within - beyond)).clamp(0.0, 1.0);
             if first.is_none_or(|(nearest, _)| way < nearest) {
                 first = Some((way, *side));
             }
