@@ -20,6 +20,12 @@ pub(crate) const SUBPIXELS: i32 = 256;
 /// Pixels from the image's origin beyond which outlines are cut, so that fixed point does not overflow.
 const GUARD: f64 = 131_072.0;
 
+/// A facet whose functions are steeper is not drawn: nothing that is computed of smaller ones overflows.
+const STEEPEST: f64 = 1e100;
+
+/// Metres beyond which all depths are alike.
+const FARTHEST: f64 = 1e9;
+
 /// `[a, b, c]` stands for a·x + b·y + c at the pixel coordinates (x, y).
 pub(crate) type Linear = [f64; 3];
 
@@ -47,7 +53,7 @@ pub(crate) struct Facet {
     count: usize,
     /// First row that it may cover, and the one after the last.
     pub rows: (i32, i32),
-    /// One for each side: its share of the corner opposite over depth; negative beyond that side.
+    /// One for each side: how many pixels within it; negative beyond.
     pub sides: [Linear; 3],
     /// One over depth in metres.
     pub inverse_depth: Linear,
@@ -192,7 +198,7 @@ impl Facet {
         let inverse_depth = weighted([1.0; 3]);
         let normal = cross(subtract(b, a), subtract(c, a));
         let length = dot(normal, normal).sqrt();
-        let finite = [u, v, inverse_depth].iter().chain(&sides).flatten().all(|c| c.is_finite());
+        let finite = [u, v, inverse_depth].iter().chain(&sides).flatten().all(|c| c.abs() < STEEPEST);
         if !(finite && length.is_finite() && length > 0.0) {
             return None;
         }
@@ -206,7 +212,7 @@ impl Facet {
             let [x, y] = optics.project(*corner).map(to_subpixels);
             (left, right, top, bottom) = (left.min(x), right.max(x), top.min(y), bottom.max(y));
             *snapped = [x, y];
-            let inverse = 1.0 / corner[2];
+            let inverse = 1.0 / if corner[2] < FARTHEST { corner[2] } else { FARTHEST };
             farthest = if inverse < farthest { inverse } else { farthest };
             nearest = if inverse > nearest { inverse } else { nearest };
         }
@@ -218,7 +224,7 @@ impl Facet {
             corners: snapped,
             count: outline.corners().len(),
             rows,
-            sides,
+            sides: sides.map(in_pixels),
             inverse_depth,
             farthest: farthest as f32,
             nearest: nearest as f32,
@@ -232,9 +238,20 @@ impl Facet {
     }
 }
 
+/// The same line, at which the function is zero, with a slope of one a pixel.
+fn in_pixels(side: Linear) -> Linear {
+    let slope = (side[0] * side[0] + side[1] * side[1]).sqrt();
+    if slope > 0.0 { side.map(|c| c / slope) } else { side }
+}
+
+/// To whole [`SUBPIXELS`].
 fn to_subpixels(pixels: f64) -> i32 {
+    // Outlines are cut at the guard: this only holds what rounding or an odd lens leaves beyond it.
+    const LIMIT: f64 = 2.0 * GUARD;
+    let held = if pixels < LIMIT { pixels } else { LIMIT };
+    let held = if held > -LIMIT { held } else { -LIMIT };
     // Rounded by truncation of a positive number: `floor` is a call where the instruction set has none.
-    ((pixels + 2.0 * GUARD) * f64::from(SUBPIXELS) + 0.5) as i32 - 2 * GUARD as i32 * SUBPIXELS
+    ((held + LIMIT) * f64::from(SUBPIXELS) + 0.5) as i32 - LIMIT as i32 * SUBPIXELS
 }
 
 /// The first pixel whose centre is at or after a place in [`SUBPIXELS`].

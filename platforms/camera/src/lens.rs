@@ -30,7 +30,7 @@ pub enum LensError {
     Size,
     /// A horizontal field of view that is not between 0 and half a turn.
     FieldOfView,
-    /// Focal lengths, centre or distortion that are not finite, or a focal length that is not positive.
+    /// A focal length that is not positive, or any parameter that is not a number or beyond a million.
     Parameters,
 }
 
@@ -39,12 +39,17 @@ impl fmt::Display for LensError {
         match self {
             Self::Size => write!(f, "an image has 1 to {} pixels along each side", Lens::MOST_PIXELS),
             Self::FieldOfView => f.write_str("a field of view is between 0 and 180 degrees"),
-            Self::Parameters => f.write_str("focal lengths are positive, and all parameters finite"),
+            Self::Parameters => {
+                f.write_str("focal lengths are positive, and no parameter is beyond a million")
+            }
         }
     }
 }
 
 impl core::error::Error for LensError {}
+
+/// Pixels: a longer focal length or a centre farther aside is none of a camera.
+const MOST_FOCAL: f64 = 1e6;
 
 /// Steps of Newton's method: from a good start four are enough.
 const STEPS: usize = 12;
@@ -83,9 +88,11 @@ impl Lens {
         let focal = width as f64 / 2.0 / (edge * radial);
         let (cx, cy) = (width as f64 / 2.0, height as f64 / 2.0);
         let lens = Self { width, height, fx: focal, fy: focal, cx, cy, distortion };
-        lens.check()?;
         // Beyond the radius where the distortion turns back, one pixel would see two directions.
-        if radial.is_nan() || edge > lens.widest() { Err(LensError::FieldOfView) } else { Ok(lens) }
+        if edge > lens.widest() {
+            return Err(LensError::FieldOfView);
+        }
+        lens.check().map(|()| lens)
     }
 
     /// # Errors
@@ -94,9 +101,13 @@ impl Lens {
         if [self.width, self.height].iter().any(|side| !(1..=Self::MOST_PIXELS).contains(side)) {
             return Err(LensError::Size);
         }
-        let focal = [self.fx, self.fy].iter().all(|f| f.is_finite() && *f > 0.0);
+        let focal = [self.fx, self.fy].iter().all(|f| *f > 0.0 && *f <= MOST_FOCAL);
         let rest = [self.cx, self.cy].into_iter().chain(self.distortion.unwrap_or_default());
-        if focal && rest.into_iter().all(f64::is_finite) { Ok(()) } else { Err(LensError::Parameters) }
+        if focal && rest.into_iter().all(|c| c.abs() <= MOST_FOCAL) {
+            Ok(())
+        } else {
+            Err(LensError::Parameters)
+        }
     }
 
     /// Where a point of the camera's frame (x forward, y left, z up) is seen, in pixels, within the image or not;

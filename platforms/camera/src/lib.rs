@@ -23,6 +23,7 @@
 
 mod blur;
 mod clip;
+mod colour;
 mod facet;
 mod figure;
 mod geometry;

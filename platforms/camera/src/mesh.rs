@@ -196,7 +196,7 @@ fn ordered(a: f64, b: f64) -> (f64, f64) {
 #[cfg(test)]
 fn faces_away(mesh: &Mesh, centre: Point) -> bool {
     mesh.triangles.iter().all(|t| {
-        let middle = scale(add(add(t.corners[0], t.corners[1]), t.corners[2]), 1.0 / 3.0);
+        let middle = add(add(t.corners[0], t.corners[1]), t.corners[2]).map(|c| c / 3.0);
         dot(t.normal, subtract(middle, centre)) > 0.0
     })
 }

@@ -1,47 +1,11 @@
 //! The colour of each pixel of a strip: the texture of the facet seen there, in its light.
 
+use crate::colour::{Colour, between, blend, brighten};
 use crate::facet::{Facet, Optics, at};
-use crate::light::FULL;
 use crate::render::Filter;
 use crate::scene::Scene;
 use crate::texture::{Level, Texture};
 use crate::visibility::{NOTHING, Strip};
-
-/// A colour as three numbers of 16 bits in one word, red lowest: one multiplication weighs all channels.
-pub(crate) type Lanes = u64;
-
-/// The low byte of each channel.
-pub(crate) const BYTES: Lanes = 0x00ff_00ff_00ff;
-
-/// A half, in 256ths, of each channel.
-pub(crate) const HALVES: Lanes = 0x0080_0080_0080;
-
-pub(crate) fn lanes([r, g, b]: [u8; 3]) -> Lanes {
-    u64::from(r) | u64::from(g) << 16 | u64::from(b) << 32
-}
-
-#[inline(always)]
-pub(crate) fn unlanes(colour: Lanes) -> [u8; 3] {
-    [colour as u8, (colour >> 16) as u8, (colour >> 32) as u8]
-}
-
-/// A colour times 256ths, saturating.
-#[inline(always)]
-pub(crate) fn brighten(colour: Lanes, shade: u32) -> Lanes {
-    if shade <= FULL {
-        return ((colour * u64::from(shade) + HALVES) >> 8) & BYTES;
-    }
-    let channel = |at: u32| ((((colour >> at) & 0xff) * u64::from(shade) + 0x80) >> 8).min(255) << at;
-    channel(0) | channel(16) | channel(32)
-}
-
-/// `a` and `b` in 256ths of the way between them.
-#[inline(always)]
-fn blend(a: Lanes, b: Lanes, share: u32) -> Lanes {
-    // A channel of `b - a` may borrow from the next; the sum gives it back.
-    ((a << 8).wrapping_add(b.wrapping_sub(a).wrapping_mul(u64::from(share))).wrapping_add(HALVES) >> 8)
-        & BYTES
-}
 
 /// Pixels that share one level of detail.
 const SPAN: usize = 8;
@@ -74,12 +38,12 @@ pub(crate) fn shade(
 }
 
 /// Pixels of row `y` from column `x` on that see one facet.
-fn run_of(facet: &Facet, texture: &Texture, x: usize, y: usize, filter: Filter, out: &mut [Lanes]) {
+fn run_of(facet: &Facet, texture: &Texture, x: usize, y: usize, filter: Filter, out: &mut [Colour]) {
     let levels = texture.levels();
     let [finest, .., _] = levels else {
         // One colour all over.
         let colour = levels.first().and_then(|level| level.texels.first());
-        out.fill(brighten(colour.copied().unwrap_or(0), facet.shade));
+        out.fill(brighten(colour.copied().unwrap_or_default(), facet.shade));
         return;
     };
     let (width, height) = finest.size();
@@ -100,15 +64,12 @@ fn run_of(facet: &Facet, texture: &Texture, x: usize, y: usize, filter: Filter, 
                 let finer = detail >> DETAIL_BITS;
                 let share = (detail >> (DETAIL_BITS - 8)) as u32 & 0xff;
                 here.sample(facet, &levels[finer as usize], out);
-                let mut coarse = [0; SPAN];
+                let mut coarse = [Colour::default(); SPAN];
                 here.sample(facet, &levels[(finer + 1).min(last) as usize], &mut coarse[..out.len()]);
                 for (out, coarse) in out.iter_mut().zip(coarse) {
                     *out = blend(*out, coarse, share);
                 }
             }
-        }
-        for out in out {
-            *out = brighten(*out, facet.shade);
         }
     }
 }
@@ -154,18 +115,17 @@ impl Here {
         ((square as f32).to_bits() as i32 - 1.0_f32.to_bits() as i32) >> 1
     }
 
-    /// The texture between four texels of a level, for as many pixels as there are.
+    /// The texture between four texels of a level, in the facet's light, for as many pixels as there are.
     ///
     /// Places are exact for each pixel: i pixels on from the first, u has grown by i·u_step over the inverse depth
     /// there. Such differences are small: single precision is ample for them.
     #[inline(always)]
-    fn sample(&self, facet: &Facet, level: &Level, out: &mut [Lanes]) {
+    fn sample(&self, facet: &Facet, level: &Level, out: &mut [Colour]) {
         let (log_width, log_height) = (level.log_width, level.log_height);
         let (across, down) = (f64::from(256_u32 << log_width), f64::from(256_u32 << log_height));
         // In 256ths of a texel, from the centre of the first.
-        let first_x = (self.u * across) as i64 as u32;
-        let first_y = (self.v * down) as i64 as u32;
-        let (first_x, first_y) = (first_x.wrapping_sub(128), first_y.wrapping_sub(128));
+        let (first_x, first_y) =
+            (whole_of_large(self.u * across - 128.0), whole_of_large(self.v * down - 128.0));
         let (x_step, y_step) = ((self.u_step * across) as f32, (self.v_step * down) as f32);
         let (start, slope) = (self.inverse_depth as f32, facet.inverse_depth[0] as f32);
         let (x_mask, y_mask) = ((256 << log_width) - 1, (256 << log_height) - 1);
@@ -185,9 +145,7 @@ impl Here {
         let texels = level.texels.as_slice();
         for (((out, corner), right), up) in out.iter_mut().zip(corners).zip(rights).zip(ups) {
             let Some(near) = texels.get(corner as usize..corner as usize + stride + 2) else { continue };
-            let below = blend(near[0], near[1], right);
-            let above = blend(near[stride], near[stride + 1], right);
-            *out = blend(below, above, up);
+            *out = between([near[0], near[1]], [near[stride], near[stride + 1]], right, up, facet.shade);
         }
     }
 }
@@ -209,4 +167,11 @@ fn whole(number: f32) -> u32 {
     let held = if number < MOST { number } else { MOST };
     let held = if held > -MOST { held } else { -MOST };
     (held + SHIFT).to_bits().wrapping_sub(SHIFT.to_bits())
+}
+
+/// As [`whole`], for numbers not beyond ±2⁵¹.
+#[inline(always)]
+fn whole_of_large(number: f64) -> u32 {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    (number + SHIFT).to_bits() as u32
 }

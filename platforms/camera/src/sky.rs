@@ -1,7 +1,7 @@
 //! What is seen where there is no triangle.
 
+use crate::colour::{Colour, WHOLE, blend, brighten, opaque};
 use crate::facet::Optics;
-use crate::shade::{Lanes, brighten, lanes};
 
 /// A gradient over elevation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,14 +28,13 @@ impl Sky {
     }
 
     /// Colours of the pixels of row `y` from column `x` on; `exposure` in 256ths.
-    pub(crate) fn fill(&self, optics: &Optics, y: usize, x: usize, exposure: u32, out: &mut [Lanes]) {
-        let [zenith, horizon, nadir] = [self.zenith, self.horizon, self.nadir].map(lanes);
+    pub(crate) fn fill(&self, optics: &Optics, y: usize, x: usize, exposure: u32, out: &mut [Colour]) {
+        let [zenith, horizon, nadir] = [self.zenith, self.horizon, self.nadir].map(opaque);
         for (i, out) in out.iter_mut().enumerate() {
             let height = optics.elevation((x + i) as f64 + 0.5, y as f64 + 0.5);
             let far = if height < 0.0 { nadir } else { zenith };
-            let share = (height.abs() * 256.0) as u64;
-            let mixed = horizon * (256 - share.min(256)) + far * share.min(256) + 0x0080_0080_0080;
-            *out = brighten((mixed >> 8) & 0x00ff_00ff_00ff, exposure);
+            let share = ((height.abs() * f64::from(WHOLE)) as u32).min(WHOLE);
+            *out = brighten(blend(horizon, far, share), exposure);
         }
     }
 }

@@ -5,15 +5,12 @@
 //! side of the nearer facet. The pixel that it passes through takes its share of the neighbour's colour. An edge
 //! nearer to upright is followed along rows, others along columns, where a box of one pixel is exact.
 
+use crate::colour::{Colour, WHOLE, opaque, rgb};
 use crate::facet::{Facet, Linear, at};
-use crate::shade::{BYTES, HALVES, Lanes, unlanes};
 use crate::visibility::Strip;
 
 /// Pixels that are looked at together for whether there is an edge at all.
 const GROUP: usize = 8;
-
-/// Shares are in 256ths.
-const WHOLE: u32 = 256;
 
 /// Writes a strip's rows from `from` on as bytes; rows before and after are looked at only.
 pub(crate) fn write(strip: &Strip, facets: &[Facet], from: usize, bytes: &mut [u8]) {
@@ -32,11 +29,27 @@ pub(crate) fn write(strip: &Strip, facets: &[Facet], from: usize, bytes: &mut [u
                 let (left, right) = (&here[x - 1..end - 1], &here[x + 1..end + 1]);
                 uniform(&here[x..end], left, right, &above[x..end], &below[x..end])
             };
-            for ((x, colour), bytes) in (x..end).zip(&colours[x..end]).zip(bytes.chunks_exact_mut(3)) {
+            let colours = &colours[x..end];
+            if let (true, Ok(colours), Ok(bytes)) = (plain, colours.try_into(), bytes.as_mut().try_into()) {
+                pack(colours, bytes);
+                continue;
+            }
+            for ((x, colour), bytes) in (x..end).zip(colours).zip(bytes.chunks_exact_mut(3)) {
                 let colour = if plain { *colour } else { mixed(strip, facets, row, x) };
-                bytes.copy_from_slice(&unlanes(colour));
+                bytes.copy_from_slice(&rgb(colour));
             }
         }
+    }
+}
+
+/// Bytes of a group, three words at a time.
+#[inline(always)]
+fn pack(colours: &[Colour; GROUP], bytes: &mut [u8; 3 * GROUP]) {
+    let [a, b, c, d, e, f, g, h] = colours.map(u64::from);
+    let words = [a | b << 24 | c << 48, c >> 16 | d << 8 | e << 32 | f << 56, f >> 8 | g << 16 | h << 40];
+    let (eights, _) = bytes.as_chunks_mut::<8>();
+    for (eight, word) in eights.iter_mut().zip(words) {
+        *eight = word.to_le_bytes();
     }
 }
 
@@ -48,7 +61,7 @@ fn uniform(here: &[u32], left: &[u32], right: &[u32], above: &[u32], below: &[u3
 }
 
 /// The colour of a pixel with its share of its neighbours'.
-fn mixed(strip: &Strip, facets: &[Facet], row: usize, x: usize) -> Lanes {
+fn mixed(strip: &Strip, facets: &[Facet], row: usize, x: usize) -> Colour {
     let width = strip.width;
     let index = row * width + x;
     let (own, number) = (strip.colours[index], strip.seen[index]);
@@ -59,7 +72,7 @@ fn mixed(strip: &Strip, facets: &[Facet], row: usize, x: usize) -> Lanes {
         (row > 0).then(|| (index - width, [0.0, -1.0])),
         (row + 1 < strip.count).then(|| (index + width, [0.0, 1.0])),
     ];
-    let (mut sum, mut given) = (0, 0);
+    let (mut sum, mut given) = ([0; 3], 0);
     for (neighbour, toward) in neighbours.into_iter().flatten() {
         let other = strip.seen[neighbour];
         if other == number {
@@ -68,10 +81,17 @@ fn mixed(strip: &Strip, facets: &[Facet], row: usize, x: usize) -> Lanes {
         let share = share(facets.get(number as usize), facets.get(other as usize), centre, toward);
         // Of a pixel with edges on all sides there is no more to give than there is.
         let share = share.min(WHOLE - given);
-        sum += strip.colours[neighbour] * u64::from(share);
+        add(&mut sum, strip.colours[neighbour], share);
         given += share;
     }
-    ((sum + own * u64::from(WHOLE - given) + HALVES) >> 8) & BYTES
+    add(&mut sum, own, WHOLE - given);
+    opaque(sum.map(|channel| ((channel + WHOLE / 2) / WHOLE) as u8))
+}
+
+fn add(sum: &mut [u32; 3], colour: Colour, share: u32) {
+    for (sum, channel) in sum.iter_mut().zip(rgb(colour)) {
+        *sum += u32::from(channel) * share;
+    }
 }
 
 /// The share of the neighbour's colour in a pixel: what lies beyond the edge between them.
@@ -98,15 +118,17 @@ fn share(own: Option<&Facet>, other: Option<&Facet>, centre: [f64; 2], toward: [
     ((0.5 - way) * f64::from(WHOLE) + 0.5) as u32
 }
 
+/// Pixels by which a centre may seem to be on the other side of an edge: corners were rounded when it was decided.
+const TRACE: f64 = 1.0 / 64.0;
+
 /// How far on the way from inside a facet to outside its edge is, and which edge.
 fn leave(facet: &Facet, inside: [f64; 2], outside: [f64; 2]) -> Option<(f64, Linear)> {
     let mut first = None;
     for side in &facet.sides {
         let beyond = at(side, outside[0], outside[1]);
-        if beyond < 0.0 {
-            let within = at(side, inside[0], inside[1]);
-            // Corners are rounded: a pixel's centre may be outside by a trace.
-            let way = if within > 0.0 { within / (within - beyond) } else { 0.0 };
+        let within = at(side, inside[0], inside[1]);
+        if beyond < TRACE && beyond < within {
+            let way = (within / (within - beyond)).clamp(0.0, 1.0);
             if first.is_none_or(|(nearest, _)| way < nearest) {
                 first = Some((way, *side));
             }

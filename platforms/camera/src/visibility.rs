@@ -23,7 +23,7 @@ pub(crate) struct Strip {
     /// For each row, the first column of the outline at hand and the one after its last.
     spans: Vec<(i32, i32)>,
     /// For the next steps: the colours.
-    pub colours: Vec<crate::shade::Lanes>,
+    pub colours: Vec<crate::colour::Colour>,
 }
 
 impl Strip {
@@ -35,7 +35,7 @@ impl Strip {
         self.seen.resize(pixels, NOTHING);
         self.depth.clear();
         self.depth.resize(pixels, 0.0);
-        self.colours.resize(pixels, 0);
+        self.colours.resize(pixels, crate::colour::Colour::default());
         self.spans.resize(count, (0, 0));
     }
 

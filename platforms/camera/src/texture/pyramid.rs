@@ -1,6 +1,6 @@
 //! A texture in all its sizes, laid out for the sampler.
 
-use crate::shade::{Lanes, lanes, unlanes};
+use crate::colour::{Colour, opaque, rgb};
 
 /// The largest side of a level: 2 to this.
 const LARGEST: u32 = 12;
@@ -13,7 +13,7 @@ pub(crate) struct Level {
     pub log_width: u32,
     pub log_height: u32,
     /// Bottom row first: v goes up.
-    pub texels: Vec<Lanes>,
+    pub texels: Vec<Colour>,
 }
 
 impl Level {
@@ -29,13 +29,13 @@ impl Level {
 
     /// The texel at the origin.
     pub fn first(&self) -> [u8; 3] {
-        self.texels.first().map_or([0; 3], |texel| unlanes(*texel))
+        self.texels.first().map_or([0; 3], |texel| rgb(*texel))
     }
 
     pub fn to_rgb8(&self) -> Vec<u8> {
         let (width, _) = self.size();
         let rows = self.texels.chunks_exact(self.stride()).rev().skip(1);
-        rows.flat_map(|row| row.iter().take(width)).flat_map(|texel| unlanes(*texel)).collect()
+        rows.flat_map(|row| row.iter().take(width)).flat_map(|texel| rgb(*texel)).collect()
     }
 }
 
@@ -125,10 +125,8 @@ fn lay_out(fine: &Fine) -> Level {
     let texel = |x: usize, y: usize| {
         // Images have their top row first, textures their bottom row.
         let row = height - 1 - y % height;
-        lanes(
-            fine.colours[(row << fine.log_width) + x % width]
-                .map(|c| ((c + SIXTEENTHS / 2) / SIXTEENTHS) as u8),
-        )
+        let colour = fine.colours[(row << fine.log_width) + x % width];
+        opaque(colour.map(|c| ((c + SIXTEENTHS / 2) / SIXTEENTHS) as u8))
     };
     let texels =
         (0..=height).flat_map(|y| (0..=width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
