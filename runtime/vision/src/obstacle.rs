@@ -1,0 +1,228 @@
+//! Edges paired to obstacles.
+//!
+//! The published way takes the nearest edge on each side of the optical centre, whatever it belongs to. This one
+//! asks what the edges do over time: an obstacle is a pair of edges that reach the horizon, close in at one rate,
+//! with nothing farther away seen between them and nothing of the same rate right outside of them. Marks on walls,
+//! floor tiles and the pattern on the obstacle's own face all fail one of these.
+
+use crate::edge::Edge;
+use crate::expansion::{Expansion, Width, Window, window};
+use crate::follow::EdgeTrack;
+use crate::lens::Lens;
+use crate::sweep::{Sweep, sweep, tangents, widths};
+use crate::why::Why;
+
+/// Parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pairing {
+    /// Fewest common sightings of two edges.
+    pub fewest: usize,
+    /// Shortest time over which they were seen, s.
+    pub shortest: f64,
+    /// The window of the expansion.
+    pub window: Window,
+    /// Largest change of the direction of motion within it, radians.
+    pub bend: f64,
+    /// Uncertainty of the direction of motion, radians.
+    pub drift: f64,
+    /// Relative difference of closing rates that counts as another distance.
+    pub difference: f64,
+    /// An edge reaches the horizon when its end is within this tangent of it.
+    pub horizon: f64,
+    /// Narrowest obstacle, tangent.
+    pub narrowest: f64,
+    /// Smallest closing rate, 1/s: what is slower is far away.
+    pub slowest: f64,
+    /// Most obstacles given.
+    pub most: usize,
+}
+
+impl Default for Pairing {
+    fn default() -> Self {
+        Self {
+            fewest: 6,
+            shortest: 0.3,
+            window: Window::default(),
+            bend: 0.05,
+            drift: 0.015,
+            difference: 0.12,
+            horizon: 0.03,
+            narrowest: 0.02,
+            slowest: 0.02,
+            most: 8,
+        }
+    }
+}
+
+/// What is seen right outside of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Beyond {
+    /// Something farther away: the edge hides it.
+    Farther,
+    /// Nothing that tells.
+    Unknown,
+}
+
+/// An obstacle: two edges that move as one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Number of the left edge's track.
+    pub left_id: u32,
+    /// Number of the right edge's track.
+    pub right_id: u32,
+    /// The left edge as seen now.
+    pub left: Edge,
+    /// The right edge as seen now.
+    pub right: Edge,
+    /// Width at the optical row, pixels.
+    pub width: f64,
+    /// Tangents of the left edge's bearing off the course over time (left positive).
+    pub left_tangents: Vec<Width>,
+    /// Those of the right edge.
+    pub right_tangents: Vec<Width>,
+    /// The history of the width: difference of the tangents, free of roll, pitch and turning.
+    pub widths: Vec<Width>,
+    /// Time to contact by expansion over that history.
+    pub contact: Expansion,
+    /// What is seen beyond the left edge, and beyond the right.
+    pub beyond: [Beyond; 2],
+}
+
+/// An edge that takes part.
+struct Candidate<'a> {
+    track: &'a EdgeTrack,
+    tangents: Vec<Width>,
+    sweep: Sweep,
+}
+
+/// A pair that may be one thing.
+struct Pair {
+    left: usize,
+    right: usize,
+    widths: Vec<Width>,
+    contact: Expansion,
+    beyond: [Beyond; 2],
+}
+
+/// The obstacles among the edges, nearest first, none overlapping a nearer one. `course` is the azimuth of the
+/// motion in the level frame, radians.
+///
+/// # Errors
+/// [`Why::NoFeatures`] without edges; [`Why::OneEdge`] for a single one; [`Why::TooShort`] while none was seen long
+/// enough; [`Why::NoObstacle`] when no two belong together; [`Why::BadNumber`].
+pub fn obstacles(tracks: &[EdgeTrack], course: f64, lens: &Lens, how: &Pairing) -> Result<Vec<Obstacle>, Why> {
+    if !course.is_finite() {
+        return Err(Why::BadNumber);
+    }
+    match tracks.iter().filter(|t| t.missed == 0).count() {
+        0 => return Err(Why::NoFeatures),
+        1 => return Err(Why::OneEdge),
+        _ => {}
+    }
+    let noise = 0.03 / lens.fx;
+    let mut candidates: Vec<Candidate<'_>> = tracks
+        .iter()
+        .filter(|t| t.missed == 0)
+        .filter(|t| {
+            t.sights.last().is_some_and(|s| s.upright.upper > -how.horizon && s.upright.lower < how.horizon)
+        })
+        .filter_map(|track| {
+            let tangents = tangents(track, course, how.bend, how.window.length);
+            let long = tangents.last()?.time - tangents.first()?.time >= how.shortest;
+            let sweep = sweep(&tangents, how.fewest, how.drift, noise).filter(|_| long)?;
+            Some(Candidate { track, tangents, sweep })
+        })
+        .collect();
+    if candidates.len() < 2 {
+        return Err(Why::TooShort);
+    }
+    // From the left: the greatest bearing first.
+    candidates.sort_by(|a, b| b.sweep.tangent.total_cmp(&a.sweep.tangent).then(a.track.id.cmp(&b.track.id)));
+    let mut pairs: Vec<Pair> = Vec::new();
+    for left in 0..candidates.len() {
+        for right in left + 1..candidates.len() {
+            pairs.extend(pair(&candidates, left, right, how));
+        }
+    }
+    // Nearest first, by what is certain; among the same, the one that is known to hide something on both sides.
+    let near = |p: &Pair| (1.0 / p.contact.ttc) * (1.0 - 0.15 * unknowns(p));
+    pairs.sort_by(|a, b| near(b).total_cmp(&near(a)).then(a.left.cmp(&b.left)).then(a.right.cmp(&b.right)));
+    let mut chosen: Vec<Pair> = Vec::new();
+    for p in pairs {
+        if chosen.len() < how.most && chosen.iter().all(|c| p.right <= c.left || c.right <= p.left) {
+            chosen.push(p);
+        }
+    }
+    if chosen.is_empty() {
+        return Err(Why::NoObstacle);
+    }
+    Ok(chosen.into_iter().map(|p| obstacle(&candidates, p, lens)).collect())
+}
+
+fn unknowns(pair: &Pair) -> f64 {
+    pair.beyond.iter().filter(|b| **b == Beyond::Unknown).count() as f64
+}
+
+/// Are these two the outline of one thing?
+fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) -> Option<Pair> {
+    let (l, r) = (&candidates[left], &candidates[right]);
+    if l.sweep.tangent - r.sweep.tangent < how.narrowest {
+        return None;
+    }
+    // Cheap first: rates that differ beyond doubt.
+    let doubt = 3.0 * (l.sweep.sigma + r.sweep.sigma);
+    let larger = l.sweep.closing.max(r.sweep.closing);
+    if (l.sweep.closing - r.sweep.closing).abs() > doubt + how.difference * larger.abs() {
+        return None;
+    }
+    let widths = widths(&l.tangents, &r.tangents);
+    let span = widths.last()?.time - widths.first()?.time;
+    if widths.len() < how.fewest || span < how.shortest {
+        return None;
+    }
+    let contact = window(&widths, &how.window).ok()?;
+    let closing = 1.0 / contact.ttc;
+    if closing < how.slowest {
+        return None;
+    }
+    let slack = |c: &Candidate<'_>| how.difference * closing + 3.0 * c.sweep.sigma;
+    if [l, r].iter().any(|c| (c.sweep.closing - closing).abs() > slack(c)) {
+        return None;
+    }
+    // Something farther away between them: they are the sides of a gap.
+    if candidates[left + 1..right].iter().any(|c| c.sweep.closing < closing - slack(c)) {
+        return None;
+    }
+    let before = left.checked_sub(1).map(|k| &candidates[k]);
+    let beyond = [beyond(before, closing, how)?, beyond(candidates.get(right + 1), closing, how)?];
+    Some(Pair { left, right, widths, contact, beyond })
+}
+
+/// What the next edge outward says; `None` when the same surface goes on there.
+fn beyond(next: Option<&Candidate<'_>>, closing: f64, how: &Pairing) -> Option<Beyond> {
+    let Some(next) = next else { return Some(Beyond::Unknown) };
+    let doubt = 2.0 * next.sweep.sigma;
+    if next.sweep.closing < closing - how.difference / 2.0 * closing - doubt {
+        Some(Beyond::Farther)
+    } else if doubt > 0.3 * closing || next.sweep.closing > closing * (1.0 + how.difference) + doubt {
+        Some(Beyond::Unknown)
+    } else {
+        None
+    }
+}
+
+fn obstacle(candidates: &[Candidate<'_>], pair: Pair, lens: &Lens) -> Obstacle {
+    let (l, r) = (&candidates[pair.left], &candidates[pair.right]);
+    Obstacle {
+        left_id: l.track.id,
+        right_id: r.track.id,
+        left: l.track.edge,
+        right: r.track.edge,
+        width: r.track.edge.x(lens) - l.track.edge.x(lens),
+        left_tangents: l.tangents.clone(),
+        right_tangents: r.tangents.clone(),
+        widths: pair.widths,
+        contact: pair.contact,
+        beyond: pair.beyond,
+    }
+}

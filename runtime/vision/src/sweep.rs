@@ -1,0 +1,87 @@
+//! How fast each edge closes in, from its bearing alone.
+//!
+//! A vertical edge at lateral offset X and distance Z is seen at the tangent q = X/Z off the direction of motion;
+//! with Z shrinking evenly q(t)·(1 − e·t) = q(0), e the inverse time to contact now. Edges of one face share e; a
+//! nearer thing has a greater e than what is behind it. This is what tells an obstacle's outline from the texture
+//! of a wall or a floor.
+
+use crate::attitude::wrap;
+use crate::expansion::Width;
+use crate::follow::EdgeTrack;
+
+/// An edge's closing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep {
+    /// Tangent of the bearing off the course now, left positive.
+    pub tangent: f64,
+    /// Inverse time to contact, 1/s.
+    pub closing: f64,
+    /// Its standard deviation, 1/s, with the uncertainty of the course.
+    pub sigma: f64,
+}
+
+/// Bearings of one edge as tangents off `course`, for the sightings since the motion last bent by more than `bend`
+/// radians and within `length` seconds of the last.
+pub fn tangents(track: &EdgeTrack, course: f64, bend: f64, length: f64) -> Vec<Width> {
+    let from = track.sights.iter().rposition(|s| wrap(s.course - course).abs() > bend).map_or(0, |k| k + 1);
+    let last = track.sights.last().map_or(0.0, |s| s.time);
+    track.sights[from..]
+        .iter()
+        .filter(|s| last - s.time <= length)
+        .filter_map(|s| {
+            let off = wrap(s.upright.bearing - course);
+            (off.abs() < 1.4).then(|| Width { time: s.time, width: libm::tan(off) })
+        })
+        .collect()
+}
+
+/// The closing of one edge from its tangents; `drift` is the uncertainty of the course in radians, `noise` the
+/// smallest noise of a tangent. `None` for fewer than `fewest` sightings.
+pub fn sweep(tangents: &[Width], fewest: usize, drift: f64, noise: f64) -> Option<Sweep> {
+    let now = tangents.last()?.time;
+    if tangents.len() < fewest.max(3) {
+        return None;
+    }
+    // q = q0 + e·(t·q): a straight line over the abscissa t·q.
+    let n = tangents.len() as f64;
+    let abscissa = |s: &Width| (s.time - now) * s.width;
+    let mx = tangents.iter().map(abscissa).sum::<f64>() / n;
+    let my = tangents.iter().map(|s| s.width).sum::<f64>() / n;
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for s in tangents {
+        let x = abscissa(s) - mx;
+        xx += x * x;
+        xy += x * (s.width - my);
+    }
+    if !(xx > 1e-18) {
+        return None;
+    }
+    let closing = xy / xx;
+    let tangent = my - closing * mx;
+    let squares: f64 = tangents
+        .iter()
+        .map(|s| {
+            let r = s.width - tangent - closing * abscissa(s);
+            r * r
+        })
+        .sum();
+    let scatter = (squares / (n - 2.0)).max(noise * noise);
+    let course = drift * closing / tangent.abs().max(1e-9);
+    let sigma = libm::sqrt(scatter / xx + course * course);
+    (closing.is_finite() && sigma.is_finite() && tangent.is_finite()).then_some(Sweep { tangent, closing, sigma })
+}
+
+/// The width between two edges at the times both were seen: difference of the tangents, left minus right.
+pub fn widths(left: &[Width], right: &[Width]) -> Vec<Width> {
+    let mut widths = Vec::with_capacity(left.len().min(right.len()));
+    let mut k = 0;
+    for l in left {
+        while k < right.len() && right[k].time < l.time {
+            k += 1;
+        }
+        if k < right.len() && right[k].time == l.time {
+            widths.push(Width { time: l.time, width: l.width - right[k].width });
+        }
+    }
+    widths
+}

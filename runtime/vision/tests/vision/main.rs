@@ -1,0 +1,4 @@
+//! The suite of the vision crate.
+
+mod approach;
+mod scene;
