@@ -80,7 +80,7 @@ impl Default for Following {
     fn default() -> Self {
         let fresh = Refinement::default();
         Self {
-            most: 48,
+            most: 96,
             memory: 2.5,
             samples: 80,
             patience: 6,
@@ -169,10 +169,10 @@ fn expected(track: &EdgeTrack, time: f64) -> Option<Upright> {
     Some(Upright { bearing: last.upright.bearing + rate * (time - last.time), ..last.upright })
 }
 
-/// Do two lines run within `apart` pixels where their rows overlap (at the nearest ends, when they do not)?
+/// Do two lines run within `apart` pixels of each other on rows that both have?
 fn same(a: &Segment, b: &Segment, apart: f64) -> bool {
     let (from, to) = (a.top[1].max(b.top[1]), a.bottom[1].min(b.bottom[1]));
-    if to - from < -40.0 {
+    if to < from {
         return false;
     }
     let y = (from + to) / 2.0;

@@ -27,7 +27,9 @@ pub struct Pairing {
     pub drift: f64,
     /// Relative difference of closing rates that counts as another distance.
     pub difference: f64,
-    /// An edge reaches the horizon when its end is within this tangent of it.
+    /// An edge must end above the horizon by this tangent: lines on the floor do not.
+    pub above: f64,
+    /// And begin below the horizon, or above it by no more than this tangent.
     pub horizon: f64,
     /// Narrowest obstacle, tangent.
     pub narrowest: f64,
@@ -44,8 +46,9 @@ impl Default for Pairing {
             shortest: 0.3,
             window: Window::default(),
             bend: 0.05,
-            drift: 0.015,
+            drift: 0.006,
             difference: 0.12,
+            above: 0.03,
             horizon: 0.03,
             narrowest: 0.02,
             slowest: 0.02,
@@ -101,6 +104,10 @@ struct Pair {
     right: usize,
     widths: Vec<Width>,
     contact: Expansion,
+    /// Closing rate, 1/s, less what its edges disagree with it and its uncertainty.
+    near: f64,
+    /// The uncertainty of the closing rate, 1/s.
+    sigma: f64,
     beyond: [Beyond; 2],
 }
 
@@ -123,13 +130,11 @@ pub fn obstacles(tracks: &[EdgeTrack], course: f64, lens: &Lens, how: &Pairing) 
     let mut candidates: Vec<Candidate<'_>> = tracks
         .iter()
         .filter(|t| t.missed == 0)
-        .filter(|t| {
-            t.sights.last().is_some_and(|s| s.upright.upper > -how.horizon && s.upright.lower < how.horizon)
-        })
+        .filter(|t| stands(t, how))
         .filter_map(|track| {
             let tangents = tangents(track, course, how.bend, how.window.length);
             let long = tangents.last()?.time - tangents.first()?.time >= how.shortest;
-            let sweep = sweep(&tangents, how.fewest, how.drift, noise).filter(|_| long)?;
+            let sweep = sweep(&tangents, how.fewest, noise).filter(|_| long)?;
             Some(Candidate { track, tangents, sweep })
         })
         .collect();
@@ -144,23 +149,47 @@ pub fn obstacles(tracks: &[EdgeTrack], course: f64, lens: &Lens, how: &Pairing) 
             pairs.extend(pair(&candidates, left, right, how));
         }
     }
-    // Nearest first, by what is certain; among the same, the one that is known to hide something on both sides.
-    let near = |p: &Pair| (1.0 / p.contact.ttc) * (1.0 - 0.15 * unknowns(p));
-    pairs.sort_by(|a, b| near(b).total_cmp(&near(a)).then(a.left.cmp(&b.left)).then(a.right.cmp(&b.right)));
-    let mut chosen: Vec<Pair> = Vec::new();
-    for p in pairs {
-        if chosen.len() < how.most && chosen.iter().all(|c| p.right <= c.left || c.right <= p.left) {
-            chosen.push(p);
-        }
-    }
+    let chosen = choose(&candidates, pairs, how);
     if chosen.is_empty() {
         return Err(Why::NoObstacle);
     }
     Ok(chosen.into_iter().map(|p| obstacle(&candidates, p, lens)).collect())
 }
 
-fn unknowns(pair: &Pair) -> f64 {
-    pair.beyond.iter().filter(|b| **b == Beyond::Unknown).count() as f64
+/// Does the edge cross the horizon, in at least a third of its latest sightings? Its ends flicker.
+fn stands(track: &EdgeTrack, how: &Pairing) -> bool {
+    let latest = &track.sights[track.sights.len().saturating_sub(12)..];
+    let crossing = latest.iter().filter(|s| s.upright.upper > how.above && s.upright.lower < how.horizon).count();
+    3 * crossing >= latest.len().max(1)
+}
+
+/// Nearest first, none overlapping another. Of the pairs at the distance of the nearest that share rows with it the
+/// outline is the one that hides something on both sides, then the widest: the others are the pattern within.
+fn choose(candidates: &[Candidate<'_>], mut pairs: Vec<Pair>, how: &Pairing) -> Vec<Pair> {
+    pairs.sort_by(|a, b| b.near.total_cmp(&a.near).then(a.left.cmp(&b.left)).then(a.right.cmp(&b.right)));
+    let breadth = |p: &Pair| candidates[p.left].sweep.tangent - candidates[p.right].sweep.tangent;
+    let apart = |a: &Pair, b: &Pair| a.right <= b.left || b.right <= a.left;
+    let mut chosen: Vec<Pair> = Vec::new();
+    while chosen.len() < how.most && !pairs.is_empty() {
+        let first = &pairs[0];
+        let limit = first.near * (1.0 - how.difference / 3.0) - first.sigma;
+        let best = (0..pairs.len())
+            .filter(|&k| pairs[k].near >= limit && !apart(&pairs[k], first))
+            .max_by(|&a, &b| {
+                let rank = |k: usize| (std::cmp::Reverse(unknowns(&pairs[k])), breadth(&pairs[k]));
+                rank(a).0.cmp(&rank(b).0).then(rank(a).1.total_cmp(&rank(b).1)).then(b.cmp(&a))
+            })
+            .unwrap_or(0);
+        let best = pairs.swap_remove(best);
+        pairs.retain(|p| apart(p, &best));
+        pairs.sort_by(|a, b| b.near.total_cmp(&a.near).then(a.left.cmp(&b.left)).then(a.right.cmp(&b.right)));
+        chosen.push(best);
+    }
+    chosen
+}
+
+fn unknowns(pair: &Pair) -> usize {
+    pair.beyond.iter().filter(|b| **b == Beyond::Unknown).count()
 }
 
 /// Are these two the outline of one thing?
@@ -170,9 +199,7 @@ fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) 
         return None;
     }
     // Cheap first: rates that differ beyond doubt.
-    let doubt = 3.0 * (l.sweep.sigma + r.sweep.sigma);
-    let larger = l.sweep.closing.max(r.sweep.closing);
-    if (l.sweep.closing - r.sweep.closing).abs() > doubt + how.difference * larger.abs() {
+    if (l.sweep.closing - r.sweep.closing).abs() > doubt(l, r, how) + how.difference * l.sweep.closing.abs() {
         return None;
     }
     let widths = widths(&l.tangents, &r.tangents);
@@ -185,7 +212,9 @@ fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) 
     if closing < how.slowest {
         return None;
     }
-    let slack = |c: &Candidate<'_>| how.difference * closing + 3.0 * c.sweep.sigma;
+    // The rate of the width does not depend on the course, those of the edges do.
+    let slack =
+        |c: &Candidate<'_>| how.difference * closing + 3.0 * c.sweep.sigma + how.drift * c.sweep.bias().abs();
     if [l, r].iter().any(|c| (c.sweep.closing - closing).abs() > slack(c)) {
         return None;
     }
@@ -194,17 +223,26 @@ fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) 
         return None;
     }
     let before = left.checked_sub(1).map(|k| &candidates[k]);
-    let beyond = [beyond(before, closing, how)?, beyond(candidates.get(right + 1), closing, how)?];
-    Some(Pair { left, right, widths, contact, beyond })
+    let beyond = [beyond(l, before, how)?, beyond(r, candidates.get(right + 1), how)?];
+    let against = |c: &Candidate<'_>| ((c.sweep.closing - closing).abs() - c.sweep.sigma).max(0.0);
+    let sigma = closing * contact.sigma / contact.ttc;
+    let near = closing - against(l) - against(r) - sigma;
+    Some(Pair { left, right, widths, contact, near, sigma, beyond })
 }
 
-/// What the next edge outward says; `None` when the same surface goes on there.
-fn beyond(next: Option<&Candidate<'_>>, closing: f64, how: &Pairing) -> Option<Beyond> {
+/// How much the rates of two edges may differ by noise and by the course being off: 1/s.
+fn doubt(a: &Candidate<'_>, b: &Candidate<'_>, how: &Pairing) -> f64 {
+    2.5 * libm::hypot(a.sweep.sigma, b.sweep.sigma) + how.drift * (a.sweep.bias() - b.sweep.bias()).abs()
+}
+
+/// What the next edge outward says about `edge`; `None` when the same surface goes on there.
+fn beyond(edge: &Candidate<'_>, next: Option<&Candidate<'_>>, how: &Pairing) -> Option<Beyond> {
     let Some(next) = next else { return Some(Beyond::Unknown) };
-    let doubt = 2.0 * next.sweep.sigma;
-    if next.sweep.closing < closing - how.difference / 2.0 * closing - doubt {
+    let (here, there) = (edge.sweep.closing, next.sweep.closing);
+    let doubt = doubt(edge, next, how);
+    if there < here * (1.0 - how.difference / 3.0) - doubt {
         Some(Beyond::Farther)
-    } else if doubt > 0.3 * closing || next.sweep.closing > closing * (1.0 + how.difference) + doubt {
+    } else if doubt > 0.3 * here || there > here * (1.0 + how.difference) + doubt {
         Some(Beyond::Unknown)
     } else {
         None

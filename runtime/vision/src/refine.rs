@@ -66,8 +66,8 @@ fn fit(image: &Gray, guess: &Segment, reach: f64, how: &Refinement) -> Option<Ed
         }));
     }
     let line = Line::robust(&peaks, guess)?;
-    let support = line.inliers as f64 / looked as f64;
-    if support < how.support || line.inliers < 8 {
+    let (from, to, support) = stretch(&peaks, &line, from, step, looked)?;
+    if support < how.support || line.inliers < 8 || to - from < how.shortest {
         return None;
     }
     let end = |y: f64| [line.at(y), y];
@@ -111,6 +111,34 @@ fn peak(row: &[u8], x: f64, reach: f64, weakest: i32) -> Option<(f64, f64)> {
     Some((at as f64 + offset, f64::from(centre)))
 }
 
+/// The stretch of rows that shows the line best (a row with it counts 5, one without −3; the largest sum), and the
+/// share of its rows that do. Beyond it the line runs over something else: a wall's stripe ends where an obstacle
+/// stands in front of it.
+fn stretch(peaks: &[Peak], line: &Line, from: f64, step: usize, looked: usize) -> Option<(f64, f64, f64)> {
+    let mut shown = vec![false; looked];
+    for p in peaks {
+        if (p.x - line.at(p.y)).abs() <= line.tight
+            && let Some(row) = shown.get_mut(((p.y - from) / step as f64) as usize)
+        {
+            *row = true;
+        }
+    }
+    let (mut best, mut sum, mut start, mut range) = (0i64, 0i64, 0usize, None);
+    for (k, &on) in shown.iter().enumerate() {
+        if sum <= 0 {
+            (sum, start) = (0, k);
+        }
+        sum += if on { 5 } else { -3 };
+        if sum > best {
+            (best, range) = (sum, Some((start, k)));
+        }
+    }
+    let (first, last) = range?;
+    let count = shown[first..=last].iter().filter(|on| **on).count();
+    let row = |k: usize| from + (k * step) as f64;
+    Some((row(first), row(last), count as f64 / (last - first + 1) as f64))
+}
+
 /// Follows the line beyond its ends while rows go on to show it.
 fn lengthen(image: &Gray, line: &Segment, how: &Refinement) -> Option<Segment> {
     let slope = (line.bottom[0] - line.top[0]) / (line.bottom[1] - line.top[1]).max(1.0);
@@ -137,6 +165,8 @@ struct Line {
     b: f64,
     y0: f64,
     inliers: usize,
+    /// Distance within which a peak belongs to the line, pixels.
+    tight: f64,
     sigma: f64,
     strength: f64,
     polarity: f64,
@@ -194,7 +224,7 @@ impl Line {
             return None;
         }
         let sigma = libm::sqrt(squares / (n - 2.0) / n);
-        Some(Self { a, b, y0, inliers, sigma, strength: strength / n, polarity: signs / n })
+        Some(Self { a, b, y0, inliers, tight: (4.0 * scale).min(0.7), sigma, strength: strength / n, polarity: signs / n })
     }
 }
 

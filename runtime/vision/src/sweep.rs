@@ -16,8 +16,16 @@ pub struct Sweep {
     pub tangent: f64,
     /// Inverse time to contact, 1/s.
     pub closing: f64,
-    /// Its standard deviation, 1/s, with the uncertainty of the course.
+    /// Its standard deviation from the scatter of the bearings, 1/s.
     pub sigma: f64,
+}
+
+impl Sweep {
+    /// By how much the closing is off for each radian that the course is off, 1/s: the tangents of all edges are
+    /// then off by the same, and e = q̇/q.
+    pub fn bias(&self) -> f64 {
+        self.closing / if self.tangent.abs() < 1e-9 { 1e-9 } else { self.tangent }
+    }
 }
 
 /// Bearings of one edge as tangents off `course`, for the sightings since the motion last bent by more than `bend`
@@ -35,9 +43,9 @@ pub fn tangents(track: &EdgeTrack, course: f64, bend: f64, length: f64) -> Vec<W
         .collect()
 }
 
-/// The closing of one edge from its tangents; `drift` is the uncertainty of the course in radians, `noise` the
-/// smallest noise of a tangent. `None` for fewer than `fewest` sightings.
-pub fn sweep(tangents: &[Width], fewest: usize, drift: f64, noise: f64) -> Option<Sweep> {
+/// The closing of one edge from its tangents; `noise` is the smallest noise of a tangent. `None` for fewer than
+/// `fewest` sightings.
+pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
     let now = tangents.last()?.time;
     if tangents.len() < fewest.max(3) {
         return None;
@@ -66,8 +74,7 @@ pub fn sweep(tangents: &[Width], fewest: usize, drift: f64, noise: f64) -> Optio
         })
         .sum();
     let scatter = (squares / (n - 2.0)).max(noise * noise);
-    let course = drift * closing / tangent.abs().max(1e-9);
-    let sigma = libm::sqrt(scatter / xx + course * course);
+    let sigma = libm::sqrt(scatter / xx);
     (closing.is_finite() && sigma.is_finite() && tangent.is_finite()).then_some(Sweep { tangent, closing, sigma })
 }
 

@@ -115,10 +115,51 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
             Err(why) => line += &format!("  flow {why:?} of {}", memory.points.len()),
         }
         if debug {
-            println!("{away:.3} edges {} {line}", seen.edges.len());
+            let known = |y: f64| {
+                memory
+                    .edges
+                    .iter()
+                    .filter(|t| (libm::tan(t.sights.last().unwrap().upright.bearing) - y / away).abs() * lens.fx < 1.0)
+                    .map(|t| t.sights.len())
+                    .max()
+            };
+            let (l, r) = (known(scene.offset + half), known(scene.offset - half));
+            println!("{away:.3} edges {} L{l:?} R{r:?} {line}", seen.edges.len());
+            if std::env::var("DEBUG_EDGES").is_ok() && frame % 20 == 0 {
+                for t in memory.edges.iter().filter(|t| t.missed == 0) {
+                    use soifra_vision::sweep::{sweep, tangents};
+                    let u = t.sights.last().unwrap().upright;
+                    let s = sweep(&tangents(t, 0.0, 0.05, 2.5), 6, 0.03 / lens.fx);
+                    if (u.bearing.tan() - scene.offset / away).abs() < 0.7 / away {
+                        println!(
+                            "   id {} n {} x {:.2} at {:.3} m up {:.2} low {:.2} {:?} support {:.2} strength {:.0}",
+                            t.id, t.sights.len(), t.edge.x(&lens), u.bearing.tan() * away, u.upper, u.lower,
+                            s.map(|s| (1.0 / s.closing * scene.speed - away, s.sigma / s.closing)), t.edge.support, t.edge.strength
+                        );
+                    }
+                }
+            }
+            if let Ok(folder) = std::env::var("DEBUG_FRAMES") && frame % 20 == 19 {
+                picture(&format!("{folder}/{}-{frame}.ppm", scene.name.replace(' ', "-")), &view, &seen);
+            }
         }
     }
     errors
+}
+
+fn picture(path: &str, view: &ImageView<'_>, seen: &soifra_vision::look::Seen) {
+    use soifra_vision::overlay::{arrow, draw, edge, rgb};
+    let mut pixels = rgb(view);
+    let mut strokes: Vec<_> = seen.edges.iter().map(|e| edge(&e.line, [255, 220, 0], 1)).collect();
+    for o in seen.obstacles.iter().flatten().rev() {
+        strokes.push(edge(&o.left.line, [0, 80, 255], 3));
+        strokes.push(edge(&o.right.line, [255, 0, 0], 3));
+    }
+    strokes.extend(seen.flows.iter().map(|f| arrow(&f.track, 8.0, [0, 255, 0])));
+    draw(&mut pixels, view.width(), view.height(), &strokes).unwrap();
+    let mut file = format!("P6 {} {} 255\n", view.width(), view.height()).into_bytes();
+    file.extend(pixels);
+    std::fs::write(path, file).unwrap();
 }
 
 pub fn report(name: &str, e: &Errors) {
