@@ -97,7 +97,9 @@ fn segments(image: &Gray, low: f64, high: f64, how: &Contours) -> Result<Vector<
 /// [`Why::BadNumber`] for fixed thresholds that are not finite or not ordered.
 pub fn thresholds(image: &Gray, wanted: Thresholds) -> Result<(f64, f64), Why> {
     match wanted {
-        Thresholds::Fixed { low, high } if low.is_finite() && high.is_finite() && 0.0 <= low && low <= high => {
+        Thresholds::Fixed { low, high }
+            if low.is_finite() && high.is_finite() && 0.0 <= low && low <= high =>
+        {
             Ok((low, high))
         }
         Thresholds::Fixed { .. } => Err(Why::BadNumber),

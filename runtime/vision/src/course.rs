@@ -177,7 +177,8 @@ pub fn course(obstacles: &[Reach], body: &Body) -> Result<Course, Why> {
     }
     let hits = |o: &Reach, at: f64| o.right - need < at && at < o.left + need;
     let clearance = |o: &Reach| o.right.max(-o.left) - body.half_width;
-    let met = obstacles.iter().enumerate().filter(|(_, o)| hits(o, 0.0)).min_by(|a, b| a.1.ttc.total_cmp(&b.1.ttc));
+    let met =
+        obstacles.iter().enumerate().filter(|(_, o)| hits(o, 0.0)).min_by(|a, b| a.1.ttc.total_cmp(&b.1.ttc));
     let passed = obstacles.iter().enumerate().min_by(|a, b| clearance(a.1).total_cmp(&clearance(b.1)));
     let Some((nearest, obstacle)) = met.or(passed) else { return Err(Why::NoObstacle) };
     // Sideways until free: each obstacle in the way pushes on to its far side. At most one push an obstacle.

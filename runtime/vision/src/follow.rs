@@ -27,7 +27,10 @@ pub struct Moment {
 impl Moment {
     /// Is everything a number?
     pub fn is_finite(&self) -> bool {
-        self.time.is_finite() && self.course.is_finite() && self.attitude.is_finite() && self.rates.is_finite()
+        self.time.is_finite()
+            && self.course.is_finite()
+            && self.attitude.is_finite()
+            && self.rates.is_finite()
     }
 }
 

@@ -87,8 +87,11 @@ impl Gray {
         }
         let mut data = vec![0u8; width * height];
         {
-            let source =
-                Mat::new_rows_cols_with_bytes::<opencv::core::Vec3b>(height as i32, width as i32, image.data)?;
+            let source = Mat::new_rows_cols_with_bytes::<opencv::core::Vec3b>(
+                height as i32,
+                width as i32,
+                image.data,
+            )?;
             let mut target = Mat::new_rows_cols_with_data_mut(height as i32, width as i32, &mut data)?;
             imgproc::cvt_color_def(&source, &mut target, imgproc::COLOR_RGB2GRAY)?;
         }

@@ -99,7 +99,8 @@ pub fn look_at(
         None => Vec::new(),
     };
     if let Some(nearest) = found.as_ref().ok().and_then(|list| list.first()) {
-        followed = points::replenish(followed, &image, &nearest.left, &nearest.right, moment, lens, &how.points);
+        followed =
+            points::replenish(followed, &image, &nearest.left, &nearest.right, moment, lens, &how.points);
     }
     let seen = Seen {
         edges: edges.iter().filter(|t| t.missed == 0).map(|t| t.edge).collect(),

@@ -9,7 +9,7 @@ use crate::edge::Edge;
 use crate::expansion::{Expansion, Width, Window, window};
 use crate::follow::EdgeTrack;
 use crate::lens::Lens;
-use crate::sweep::{Sweep, sweep, tangents, widths};
+use crate::sweep::{Sweep, settled, sweep, tangents, widths};
 use crate::why::Why;
 
 /// Parameters.
@@ -27,9 +27,11 @@ pub struct Pairing {
     pub drift: f64,
     /// Relative difference of closing rates that counts as another distance.
     pub difference: f64,
-    /// An edge must end above the horizon by this tangent: lines on the floor do not.
+    /// Straight ahead, within this tangent of the course, where lines on the floor seem to stand, ...
+    pub ahead: f64,
+    /// ... an edge must end above the horizon by this tangent.
     pub above: f64,
-    /// And begin below the horizon, or above it by no more than this tangent.
+    /// An edge must begin below the horizon, or above it by no more than this tangent.
     pub horizon: f64,
     /// Narrowest obstacle, tangent.
     pub narrowest: f64,
@@ -48,8 +50,9 @@ impl Default for Pairing {
             bend: 0.05,
             drift: 0.006,
             difference: 0.12,
+            ahead: 0.04,
             above: 0.03,
-            horizon: 0.03,
+            horizon: 0.1,
             narrowest: 0.02,
             slowest: 0.02,
             most: 8,
@@ -117,7 +120,12 @@ struct Pair {
 /// # Errors
 /// [`Why::NoFeatures`] without edges; [`Why::OneEdge`] for a single one; [`Why::TooShort`] while none was seen long
 /// enough; [`Why::NoObstacle`] when no two belong together; [`Why::BadNumber`].
-pub fn obstacles(tracks: &[EdgeTrack], course: f64, lens: &Lens, how: &Pairing) -> Result<Vec<Obstacle>, Why> {
+pub fn obstacles(
+    tracks: &[EdgeTrack],
+    course: f64,
+    lens: &Lens,
+    how: &Pairing,
+) -> Result<Vec<Obstacle>, Why> {
     if !course.is_finite() {
         return Err(Why::BadNumber);
     }
@@ -130,11 +138,11 @@ pub fn obstacles(tracks: &[EdgeTrack], course: f64, lens: &Lens, how: &Pairing) 
     let mut candidates: Vec<Candidate<'_>> = tracks
         .iter()
         .filter(|t| t.missed == 0)
-        .filter(|t| stands(t, how))
         .filter_map(|track| {
             let tangents = tangents(track, course, how.bend, how.window.length);
+            let tangents = settled(&tangents, how.fewest, noise).to_vec();
             let long = tangents.last()?.time - tangents.first()?.time >= how.shortest;
-            let sweep = sweep(&tangents, how.fewest, noise).filter(|_| long)?;
+            let sweep = sweep(&tangents, how.fewest, noise).filter(|s| long && stands(track, s, how))?;
             Some(Candidate { track, tangents, sweep })
         })
         .collect();
@@ -156,11 +164,14 @@ pub fn obstacles(tracks: &[EdgeTrack], course: f64, lens: &Lens, how: &Pairing) 
     Ok(chosen.into_iter().map(|p| obstacle(&candidates, p, lens)).collect())
 }
 
-/// Does the edge cross the horizon, in at least a third of its latest sightings? Its ends flicker.
-fn stands(track: &EdgeTrack, how: &Pairing) -> bool {
+/// Does the edge stand on the floor and, where lines on the floor seem upright, rise above the horizon? Judged on its
+/// latest sightings, a third must agree: its ends flicker. A line on the floor that is seen elsewhere than straight
+/// ahead points at a place on the horizon that does not move, so that its closing rate gives it away.
+fn stands(track: &EdgeTrack, sweep: &Sweep, how: &Pairing) -> bool {
     let latest = &track.sights[track.sights.len().saturating_sub(12)..];
-    let crossing = latest.iter().filter(|s| s.upright.upper > how.above && s.upright.lower < how.horizon).count();
-    3 * crossing >= latest.len().max(1)
+    let above = if sweep.tangent.abs() < how.ahead { how.above } else { f64::NEG_INFINITY };
+    let standing = latest.iter().filter(|s| s.upright.upper > above && s.upright.lower < how.horizon).count();
+    3 * standing >= latest.len().max(1)
 }
 
 /// Nearest first, none overlapping another. Of the pairs at the distance of the nearest that share rows with it the
@@ -219,15 +230,28 @@ fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) 
         return None;
     }
     // Something farther away between them: they are the sides of a gap.
-    if candidates[left + 1..right].iter().any(|c| c.sweep.closing < closing - slack(c)) {
+    if candidates[left + 1..right]
+        .iter()
+        .any(|c| beside(l, c) && beside(r, c) && c.sweep.closing < closing - slack(c))
+    {
         return None;
     }
-    let before = left.checked_sub(1).map(|k| &candidates[k]);
-    let beyond = [beyond(l, before, how)?, beyond(r, candidates.get(right + 1), how)?];
+    let before = candidates[..left].iter().rev().find(|c| beside(l, c));
+    let after = candidates[right + 1..].iter().find(|c| beside(r, c));
+    let beyond = [beyond(l, before, how)?, beyond(r, after, how)?];
     let against = |c: &Candidate<'_>| ((c.sweep.closing - closing).abs() - c.sweep.sigma).max(0.0);
     let sigma = closing * contact.sigma / contact.ttc;
     let near = closing - against(l) - against(r) - sigma;
     Some(Pair { left, right, widths, contact, near, sigma, beyond })
+}
+
+/// Are two edges beside each other, at one height for at least a quarter of the shorter one? What is seen above an
+/// obstacle says nothing about it.
+fn beside(a: &Candidate<'_>, b: &Candidate<'_>) -> bool {
+    let span =
+        |c: &Candidate<'_>| c.track.sights.last().map_or((0.0, 0.0), |s| (s.upright.lower, s.upright.upper));
+    let ((a0, a1), (b0, b1)) = (span(a), span(b));
+    a1.min(b1) - a0.max(b0) >= 0.25 * (a1 - a0).min(b1 - b0)
 }
 
 /// How much the rates of two edges may differ by noise and by the course being off: 1/s.

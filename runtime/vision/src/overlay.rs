@@ -25,7 +25,12 @@ pub fn edge(segment: &Segment, colour: [u8; 3], thickness: u8) -> Stroke {
 
 /// A stroke along a point's flow, lengthened `gain` times: it ends at the point's present place.
 pub fn arrow(track: &Track, gain: f64, colour: [u8; 3]) -> Stroke {
-    Stroke { from: [track.x - gain * track.u, track.y - gain * track.v], to: [track.x, track.y], colour, thickness: 1 }
+    Stroke {
+        from: [track.x - gain * track.u, track.y - gain * track.v],
+        to: [track.x, track.y],
+        colour,
+        thickness: 1,
+    }
 }
 
 /// A copy of the image as RGB, `width * height * 3` bytes.

@@ -147,10 +147,30 @@ fn lucas_kanade(
     // 20 rounds or 0.005 pixels: finer than the default, which stops at 0.01.
     let stop = TermCriteria::new(3, 20, 0.005)?;
     video::calc_optical_flow_pyr_lk(
-        &a, &b, &start, &mut there, &mut found, &mut errors, window, levels, stop, 0, 1e-4,
+        &a,
+        &b,
+        &start,
+        &mut there,
+        &mut found,
+        &mut errors,
+        window,
+        levels,
+        stop,
+        0,
+        1e-4,
     )?;
     video::calc_optical_flow_pyr_lk(
-        &b, &a, &there, &mut back, &mut found_back, &mut errors, window, levels, stop, 0, 1e-4,
+        &b,
+        &a,
+        &there,
+        &mut back,
+        &mut found_back,
+        &mut errors,
+        window,
+        levels,
+        stop,
+        0,
+        1e-4,
     )?;
     let allowed = how.back.max(1e-6);
     Ok((0..points.len())
@@ -230,7 +250,9 @@ pub fn replenish(
     points.retain(|p| {
         let [x, y] = p.pixel;
         let across = left.line.x_at(y) - 2.0 <= x && x <= right.line.x_at(y) + 2.0;
-        across && y >= left.line.top[1].min(right.line.top[1]) && y <= left.line.bottom[1].max(right.line.bottom[1])
+        across
+            && y >= left.line.top[1].min(right.line.top[1])
+            && y <= left.line.bottom[1].max(right.line.bottom[1])
     });
     let full = 2 * how.on_edge + how.cells[0] * how.cells[1];
     for new in choose(image, left, right, how) {

@@ -59,11 +59,13 @@ fn fit(image: &Gray, guess: &Segment, reach: f64, how: &Refinement) -> Option<Ed
     let mut looked = 0usize;
     for y in (from as usize..=to as usize).step_by(step) {
         looked += 1;
-        peaks.extend(peak(image.row(y), guess.x_at(y as f64), reach, how.weakest).map(|(x, strength)| Peak {
-            y: y as f64,
-            x,
-            strength,
-        }));
+        peaks.extend(
+            peak(image.row(y), guess.x_at(y as f64), reach, how.weakest).map(|(x, strength)| Peak {
+                y: y as f64,
+                x,
+                strength,
+            }),
+        );
     }
     let line = Line::robust(&peaks, guess)?;
     let (from, to, support) = stretch(&peaks, &line, from, step, looked)?;
@@ -224,7 +226,16 @@ impl Line {
             return None;
         }
         let sigma = libm::sqrt(squares / (n - 2.0) / n);
-        Some(Self { a, b, y0, inliers, tight: (4.0 * scale).min(0.7), sigma, strength: strength / n, polarity: signs / n })
+        Some(Self {
+            a,
+            b,
+            y0,
+            inliers,
+            tight: (4.0 * scale).min(0.7),
+            sigma,
+            strength: strength / n,
+            polarity: signs / n,
+        })
     }
 }
 

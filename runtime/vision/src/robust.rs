@@ -123,7 +123,9 @@ pub fn history(
         let from = p.sights.iter().rposition(bent).map_or(0, |k| k + 1);
         let Some(first) = p.sights[from..].iter().find(|s| time - s.time <= how.baseline) else { continue };
         let baseline = time - first.time;
-        if let (true, Some(now), Some(then)) = (baseline > 0.0, along(last.ray, course), along(first.ray, course)) {
+        if let (true, Some(now), Some(then)) =
+            (baseline > 0.0, along(last.ray, course), along(first.ray, course))
+        {
             pairs.push(Pair { now, then, baseline, both: p.part == Part::Interior });
         }
     }

@@ -70,7 +70,12 @@ pub fn merge(segments: &[Segment], how: &Merging) -> Vec<Segment> {
     let key = |s: &Segment| [s.top[0], s.top[1], s.bottom[0], s.bottom[1]];
     pieces.sort_by(|a, b| {
         b.length().total_cmp(&a.length()).then_with(|| {
-            key(a).iter().zip(key(b)).map(|(p, q)| p.total_cmp(&q)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+            key(a)
+                .iter()
+                .zip(key(b))
+                .map(|(p, q)| p.total_cmp(&q))
+                .find(|o| o.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
         })
     });
     let mut merged: Vec<Segment> = Vec::new();
@@ -88,7 +93,9 @@ pub fn merge(segments: &[Segment], how: &Merging) -> Vec<Segment> {
             None => done.push(piece),
         }
     }
-    done.sort_by(|a, b| a.x_at(a.middle()).total_cmp(&b.x_at(b.middle())).then(a.top[1].total_cmp(&b.top[1])));
+    done.sort_by(|a, b| {
+        a.x_at(a.middle()).total_cmp(&b.x_at(b.middle())).then(a.top[1].total_cmp(&b.top[1]))
+    });
     done
 }
 

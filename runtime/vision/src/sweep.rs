@@ -75,7 +75,36 @@ pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
         .sum();
     let scatter = (squares / (n - 2.0)).max(noise * noise);
     let sigma = libm::sqrt(scatter / xx);
-    (closing.is_finite() && sigma.is_finite() && tangent.is_finite()).then_some(Sweep { tangent, closing, sigma })
+    (closing.is_finite() && sigma.is_finite() && tangent.is_finite()).then_some(Sweep {
+        tangent,
+        closing,
+        sigma,
+    })
+}
+
+/// The latest part of a history that one closing explains. A track may have changed over to another edge that it
+/// met, and the robot may have sped up: where the two halves of the history disagree beyond their noise only the
+/// later one counts, and so on with that.
+pub fn settled(tangents: &[Width], fewest: usize, noise: f64) -> &[Width] {
+    let mut rest = tangents;
+    while rest.len() >= 2 * fewest.max(5) {
+        let (early, late) = rest.split_at(rest.len() / 2);
+        let (Some(before), Some(now)) = (sweep(early, fewest, noise), sweep(late, fewest, noise)) else {
+            break;
+        };
+        // The early half speaks of its own end: brought to the present, e grows as the distance shrinks.
+        let gap = late[late.len() - 1].time - early[early.len() - 1].time;
+        let base = 1.0 - before.closing * gap;
+        if base > 0.1 {
+            let brought = before.closing / base;
+            let doubt = 5.0 * libm::hypot(before.sigma / (base * base), now.sigma) + 0.1 * now.closing.abs();
+            if (brought - now.closing).abs() <= doubt {
+                break;
+            }
+        }
+        rest = late;
+    }
+    rest
 }
 
 /// The width between two edges at the times both were seen: difference of the tangents, left minus right.

@@ -80,6 +80,9 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
         let (seen, next) = look(&view, memory, &moment, &lens, &how).unwrap();
         memory = next;
         let bin = BINS.iter().position(|b| b.0 <= away && away < b.1);
+        let visible =
+            [scene.offset + half, scene.offset - half].iter().all(|y| (y / away).abs() * lens.fx < 310.0);
+        let bin = bin.filter(|_| visible);
         if let Some(bin) = bin {
             errors.frames[bin] += 1;
         }
@@ -119,13 +122,15 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
                 memory
                     .edges
                     .iter()
-                    .filter(|t| (libm::tan(t.sights.last().unwrap().upright.bearing) - y / away).abs() * lens.fx < 1.0)
+                    .filter(|t| {
+                        (libm::tan(t.sights.last().unwrap().upright.bearing) - y / away).abs() * lens.fx < 1.0
+                    })
                     .map(|t| t.sights.len())
                     .max()
             };
             let (l, r) = (known(scene.offset + half), known(scene.offset - half));
             println!("{away:.3} edges {} L{l:?} R{r:?} {line}", seen.edges.len());
-            if std::env::var("DEBUG_EDGES").is_ok() && frame % 20 == 0 {
+            if std::env::var("DEBUG_EDGES").is_ok() && frame % 10 == 0 {
                 for t in memory.edges.iter().filter(|t| t.missed == 0) {
                     use soifra_vision::sweep::{sweep, tangents};
                     let u = t.sights.last().unwrap().upright;
@@ -133,13 +138,22 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
                     if (u.bearing.tan() - scene.offset / away).abs() < 0.7 / away {
                         println!(
                             "   id {} n {} x {:.2} at {:.3} m up {:.2} low {:.2} {:?} support {:.2} strength {:.0}",
-                            t.id, t.sights.len(), t.edge.x(&lens), u.bearing.tan() * away, u.upper, u.lower,
-                            s.map(|s| (1.0 / s.closing * scene.speed - away, s.sigma / s.closing)), t.edge.support, t.edge.strength
+                            t.id,
+                            t.sights.len(),
+                            t.edge.x(&lens),
+                            u.bearing.tan() * away,
+                            u.upper,
+                            u.lower,
+                            s.map(|s| (1.0 / s.closing * scene.speed - away, s.sigma / s.closing)),
+                            t.edge.support,
+                            t.edge.strength
                         );
                     }
                 }
             }
-            if let Ok(folder) = std::env::var("DEBUG_FRAMES") && frame % 20 == 19 {
+            if let Ok(folder) = std::env::var("DEBUG_FRAMES")
+                && frame % 20 == 19
+            {
                 picture(&format!("{folder}/{}-{frame}.ppm", scene.name.replace(' ', "-")), &view, &seen);
             }
         }
@@ -197,7 +211,14 @@ pub fn scenes() -> Vec<Approach> {
     vec![
         Approach { name: "clouds", ..base() },
         Approach { name: "bricks", wall: Paint::Bricks, face: Paint::Checker(0.2), ..base() },
-        Approach { name: "wide lens", fov: 90.0, speed: 0.3, wall: Paint::Stripes(0.5), face: Paint::Bricks, ..base() },
+        Approach {
+            name: "wide lens",
+            fov: 90.0,
+            speed: 0.3,
+            wall: Paint::Stripes(0.5),
+            face: Paint::Bricks,
+            ..base()
+        },
         Approach {
             name: "flying",
             speed: 0.8,
@@ -207,7 +228,13 @@ pub fn scenes() -> Vec<Approach> {
             face: Paint::Speckle,
             ..base()
         },
-        Approach { name: "plain box", wall: Paint::Bricks, face: Paint::Plain(120.0), offset: -0.3, ..base() },
+        Approach {
+            name: "plain box",
+            wall: Paint::Bricks,
+            face: Paint::Plain(120.0),
+            offset: -0.3,
+            ..base()
+        },
         Approach {
             name: "one side",
             offset: 1.0,

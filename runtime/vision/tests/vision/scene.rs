@@ -39,7 +39,9 @@ pub struct Camera {
 }
 
 fn hash(x: i64, y: i64, seed: u64) -> f64 {
-    let mut h = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (y as u64).wrapping_mul(0xC2B2_AE3D_27D4_EB4F) ^ seed;
+    let mut h = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+        ^ (y as u64).wrapping_mul(0xC2B2_AE3D_27D4_EB4F)
+        ^ seed;
     h = (h ^ (h >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     h = (h ^ (h >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     ((h ^ (h >> 31)) >> 11) as f64 / (1u64 << 53) as f64
@@ -69,7 +71,11 @@ impl Paint {
                 if odd { 60.0 } else { 170.0 }
             }
             Paint::Stripes(size) => {
-                if (u / size).floor() as i64 % 2 == 0 { 80.0 } else { 150.0 }
+                if (u / size).floor() as i64 % 2 == 0 {
+                    80.0
+                } else {
+                    150.0
+                }
             }
             Paint::Clouds(size) => {
                 let broad = clouds(u / size, v / size, seed);
@@ -130,7 +136,15 @@ impl Room {
     }
 
     /// A grey frame of `width` x `height`, with noise of standard deviation `sigma` grey levels.
-    pub fn frame(&self, camera: &Camera, lens: &Lens, width: usize, height: usize, sigma: f64, seed: u64) -> Vec<u8> {
+    pub fn frame(
+        &self,
+        camera: &Camera,
+        lens: &Lens,
+        width: usize,
+        height: usize,
+        sigma: f64,
+        seed: u64,
+    ) -> Vec<u8> {
         let m = camera.attitude.rotation();
         let sample = |x: f64, y: f64| {
             let ray = lens.ray(x, y).unwrap();
