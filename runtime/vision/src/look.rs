@@ -48,8 +48,8 @@ pub struct Seen {
     pub flows: Vec<Flow>,
 }
 
-/// Looks at a frame: edges are followed and paired, points on the nearest obstacle are followed. The memory comes
-/// back advanced; after an error of this function keep the old one and go on with the next frame.
+/// Looks at a frame: edges are followed and paired, points on the nearest obstacle are followed. The next memory
+/// comes back; after an error go on from the old one with the next frame.
 ///
 /// # Errors
 /// [`Why::Black`], [`Why::White`]; the interval's, when the frame is not newer than the last;
@@ -57,7 +57,7 @@ pub struct Seen {
 /// changed; [`Why::BadNumber`].
 pub fn look(
     frame: &ImageView<'_>,
-    memory: Memory,
+    memory: &Memory,
     moment: &Moment,
     lens: &Lens,
     how: &Looking,
@@ -71,7 +71,7 @@ pub fn look(
 /// As [`look`].
 pub fn look_at(
     image: Gray,
-    memory: Memory,
+    memory: &Memory,
     moment: &Moment,
     lens: &Lens,
     how: &Looking,
@@ -86,16 +86,21 @@ pub fn look_at(
     if let Some(last) = memory.time {
         crate::why::interval(moment.time - last)?;
     }
+    if memory.image.as_ref().is_some_and(|i| (i.width(), i.height()) != (image.width(), image.height())) {
+        return Err(Why::WrongSize);
+    }
     image.lit()?;
     let segments = match verticals(&image, moment.attitude.roll, &how.contours) {
         Ok(segments) => segments,
         Err(Why::NoFeatures) => Vec::new(),
         Err(why) => return Err(why),
     };
-    let edges = follow(memory.edges, &image, &segments, moment, lens, &how.edges);
+    let edges = follow(memory.edges.clone(), &image, &segments, moment, lens, &how.edges);
     let found = obstacles(&edges, moment.course, lens, &how.pairing);
     let mut followed = match &memory.image {
-        Some(previous) => points::advance(memory.points, previous, &image, moment, lens, &how.points)?,
+        Some(previous) => {
+            points::advance(memory.points.clone(), previous, &image, moment, lens, &how.points)?
+        }
         None => Vec::new(),
     };
     if let Some(nearest) = found.as_ref().ok().and_then(|list| list.first()) {

@@ -83,28 +83,37 @@ pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
 }
 
 /// The latest part of a history that one closing explains. A track may have changed over to another edge that it
-/// met, and the robot may have sped up: where the two halves of the history disagree beyond their noise only the
-/// later one counts, and so on with that.
+/// met, and the robot may have sped up: where an early and a late part of the history disagree beyond their noise
+/// only the later one counts, cut where they disagree most; and so on with that.
 pub fn settled(tangents: &[Width], fewest: usize, noise: f64) -> &[Width] {
+    let fewest = fewest.max(5);
     let mut rest = tangents;
-    while rest.len() >= 2 * fewest.max(5) {
-        let (early, late) = rest.split_at(rest.len() / 2);
-        let (Some(before), Some(now)) = (sweep(early, fewest, noise), sweep(late, fewest, noise)) else {
-            break;
-        };
-        // The early half speaks of its own end: brought to the present, e grows as the distance shrinks.
-        let gap = late[late.len() - 1].time - early[early.len() - 1].time;
-        let base = 1.0 - before.closing * gap;
-        if base > 0.1 {
-            let brought = before.closing / base;
-            let doubt = 5.0 * libm::hypot(before.sigma / (base * base), now.sigma) + 0.1 * now.closing.abs();
-            if (brought - now.closing).abs() <= doubt {
-                break;
-            }
+    while rest.len() >= 2 * fewest {
+        let worst = (1..6)
+            .map(|k| (rest.len() * k / 6).clamp(fewest, rest.len() - fewest))
+            .map(|at| (disagreement(&rest[..at], &rest[at..], fewest, noise), at))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((size, at)) if size > 1.0 => rest = &rest[at..],
+            _ => break,
         }
-        rest = late;
     }
     rest
+}
+
+/// By how much two parts of a history disagree, in units of what their noise allows.
+fn disagreement(early: &[Width], late: &[Width], fewest: usize, noise: f64) -> f64 {
+    let (Some(before), Some(now)) = (sweep(early, fewest, noise), sweep(late, fewest, noise)) else {
+        return 0.0;
+    };
+    // The early part speaks of its own end: brought to the present, e grows as the distance shrinks.
+    let gap = late[late.len() - 1].time - early[early.len() - 1].time;
+    let base = 1.0 - before.closing * gap;
+    if base <= 0.1 {
+        return 0.0;
+    }
+    let doubt = 5.0 * libm::hypot(before.sigma / (base * base), now.sigma) + 0.1 * now.closing.abs();
+    (before.closing / base - now.closing).abs() / doubt
 }
 
 /// The width between two edges at the times both were seen: difference of the tangents, left minus right.

@@ -77,7 +77,7 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
             yaw: attitude.yaw + jitter * noise.next(),
         };
         let moment = Moment { time, attitude, rates, course: 0.0 };
-        let (seen, next) = look(&view, memory, &moment, &lens, &how).unwrap();
+        let (seen, next) = look(&view, &memory, &moment, &lens, &how).unwrap();
         memory = next;
         let bin = BINS.iter().position(|b| b.0 <= away && away < b.1);
         let visible =
