@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
-use opencv::core::{Mat, Point2f, Size, TermCriteria, Vec4i, Vector};
+use opencv::core::{Mat, Point2f, Size, TermCriteria, ToInputArray, Vec4i, Vector};
 use opencv::{imgproc, video};
 use soifra_vision::contours::{Contours, Thresholds, thresholds, verticals};
 use soifra_vision::follow::Moment;
@@ -50,7 +50,7 @@ fn view(rgb: &[u8]) -> ImageView<'_> {
 }
 
 /// The bare calls of the detection: Canny with the thresholds that the service uses, Hough.
-fn detect(gray: &Mat, (low, high): (f64, f64), how: &Contours) -> Vector<Vec4i> {
+fn detect(gray: &impl ToInputArray, (low, high): (f64, f64), how: &Contours) -> Vector<Vec4i> {
     let mut contours = Mat::default();
     imgproc::canny(gray, &mut contours, low, high, 3, false).expect("canny");
     let mut lines = Vector::new();
@@ -61,15 +61,31 @@ fn detect(gray: &Mat, (low, high): (f64, f64), how: &Contours) -> Vector<Vec4i> 
 }
 
 /// The bare calls of the flow: there and back.
-fn flow(from: &Mat, to: &Mat, start: &Vector<Point2f>, how: &points::Following) -> Vector<Point2f> {
-    let (mut there, mut back) = (Vector::new(), Vector::new());
+fn flow(
+    from: &impl ToInputArray,
+    to: &impl ToInputArray,
+    start: &Vector<Point2f>,
+    how: &points::Following,
+) -> Vector<Point2f> {
+    let (mut there, mut back) = (Vector::<Point2f>::new(), Vector::<Point2f>::new());
     let (mut found, mut errors) = (Vector::<u8>::new(), Vector::<f32>::new());
     let size = Size::new(how.window, how.window);
     let stop = TermCriteria::new(3, 20, 0.005).expect("criteria");
-    for (a, b, p, q) in [(from, to, start, &mut there)] {
-        video::calc_optical_flow_pyr_lk(a, b, p, q, &mut found, &mut errors, size, how.levels, stop, 0, 1e-4)
-            .expect("flow");
-    }
+    let levels = how.levels;
+    video::calc_optical_flow_pyr_lk(
+        from,
+        to,
+        start,
+        &mut there,
+        &mut found,
+        &mut errors,
+        size,
+        levels,
+        stop,
+        0,
+        1e-4,
+    )
+    .expect("flow");
     video::calc_optical_flow_pyr_lk(
         to,
         from,
@@ -78,7 +94,7 @@ fn flow(from: &Mat, to: &Mat, start: &Vector<Point2f>, how: &points::Following) 
         &mut found,
         &mut errors,
         size,
-        how.levels,
+        levels,
         stop,
         0,
         1e-4,

@@ -19,6 +19,7 @@
 //!
 //! **Invariant:** same inputs, same values: no clock, no unseeded randomness, no order of threads (see
 //! [`single_thread`]; the values do not depend on it). No input panics, no value is NaN.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "a comparison with NaN has to refuse; 2026-11-23")]
 
 pub mod attitude;
 pub mod contours;

@@ -122,14 +122,12 @@ fn corner(image: &Gray, at: [f64; 2]) -> f64 {
     (xx + yy) / 2.0 - libm::sqrt(half * half + xy * xy)
 }
 
+/// A point's place in the other frame and its quality, unless it was lost.
+type Found = Option<([f64; 2], f64)>;
+
 /// Where `points` of the image `from` are in the image `to`, with a quality; `None` for lost ones. Each is followed
 /// there and back.
-fn lucas_kanade(
-    from: &Gray,
-    to: &Gray,
-    points: &[[f64; 2]],
-    how: &Following,
-) -> Result<Vec<Option<([f64; 2], f64)>>, Why> {
+fn lucas_kanade(from: &Gray, to: &Gray, points: &[[f64; 2]], how: &Following) -> Result<Vec<Found>, Why> {
     if points.is_empty() {
         return Ok(Vec::new());
     }
