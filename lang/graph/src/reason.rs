@@ -31,7 +31,33 @@ pub const REASONS: &[&str] = &[
     "no contact",
     "the matrix is singular",
     "the reading was not finite",
+    "wrong image size",
+    "wrong number of channels",
+    "empty image",
+    "image too small",
+    "image all black",
+    "image all white",
+    "lens parameters unusable",
+    "a number is not finite or out of range",
+    "no features",
+    "one edge only",
+    "no obstacle among the edges",
+    "seen too shortly",
+    "zero interval",
+    "negative interval",
+    "no motion in the image",
+    "not approaching",
+    "degenerate geometry",
+    "rotating",
+    "speed zero",
+    "OpenCV refused",
+    "unknown",
 ];
+
+/// The index of a reason; the last one for a text that is none of them.
+pub fn index(text: &str) -> usize {
+    REASONS.iter().position(|r| *r == text).unwrap_or(REASONS.len() - 1)
+}
 
 /// The optional's tag for a reason: 0 is some, so it is one more than the index.
 pub const fn tag(reason: usize) -> f64 {

@@ -143,7 +143,7 @@ impl TryFrom<String> for Type {
 }
 
 /// Types whose values are passed around and never looked into: only services can.
-pub const OPAQUE: [&str; 1] = ["Image"];
+pub const OPAQUE: [&str; 2] = ["Image", "Sight"];
 
 /// A record: named fields in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -22,7 +22,14 @@ impl Compiler<'_> {
                 let place = self.generate(range, None)?;
                 Ok(self.settle(place.plus(u32::from(f == F::High)), dest, 1, e.span))
             }
-            F::Brightness => self.gen_service(e, f, dest),
+            F::Brightness
+            | F::Look
+            | F::Obstacles
+            | F::ContactByExpansion
+            | F::ContactByFlow
+            | F::ContactByRobustFlow
+            | F::Diverging
+            | F::CourseAhead => self.gen_service(e, f, dest),
             F::Draw | F::Inside => self.gen_env_function(e, f, dest),
             F::Norm | F::Distance => {
                 self.check_call(e, f)?;

@@ -1,5 +1,8 @@
 //! What missions call services for: functions that the runtime's machine does not compute itself.
 
+#[cfg(feature = "vision")]
+mod vision;
+
 use soifra_graph::{Function, eval::FaultKind};
 use soifra_runtime::objects::{Frame, Services, Shelf};
 
@@ -22,7 +25,10 @@ impl Services for Everything {
                 *out = brightness(frame);
                 Ok(())
             }
-            _ => Err(FaultKind::Unavailable("this service")),
+            #[cfg(feature = "vision")]
+            (which, args, out) => vision::call(which, args, shelf, out),
+            #[cfg(not(feature = "vision"))]
+            _ => Err(FaultKind::Unavailable("vision: this program was built without it")),
         }
     }
 }

@@ -1,0 +1,183 @@
+//! Edges followed from frame to frame: what makes a history of an edge's bearing.
+//!
+//! A known edge is looked for where it is expected and refined there, whether or not Hough's transform finds it
+//! again; Hough only brings new ones. The memory is a plain list that the caller keeps.
+
+use crate::attitude::{Attitude, Rates, wrap};
+use crate::edge::{Edge, Upright, seen, upright};
+use crate::image::Gray;
+use crate::lens::Lens;
+use crate::refine::{Refinement, refine};
+use crate::segment::Segment;
+
+/// What the robot knows about itself when a frame is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moment {
+    /// Seconds.
+    pub time: f64,
+    /// The camera's attitude; yaw from any heading that stays the same (an integrated gyro will do).
+    pub attitude: Attitude,
+    /// The camera's rates of turning.
+    pub rates: Rates,
+    /// Azimuth of the direction of motion in the level frame, radians: the yaw, for a robot that drives straight
+    /// ahead.
+    pub course: f64,
+}
+
+impl Moment {
+    /// Is everything a number?
+    pub fn is_finite(&self) -> bool {
+        self.time.is_finite()
+            && self.course.is_finite()
+            && self.attitude.is_finite()
+            && self.rates.is_finite()
+    }
+}
+
+/// One sighting of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeSight {
+    /// Seconds.
+    pub time: f64,
+    /// Azimuth of the direction of motion then, radians.
+    pub course: f64,
+    /// Where it stood in the level frame.
+    pub upright: Upright,
+}
+
+/// An edge followed over frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeTrack {
+    /// Its number: smaller ones were found earlier.
+    pub id: u32,
+    /// The edge as last seen.
+    pub edge: Edge,
+    /// Frames since then.
+    pub missed: u32,
+    /// Sightings, oldest first.
+    pub sights: Vec<EdgeSight>,
+}
+
+/// Parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// Most edges followed.
+    pub most: usize,
+    /// Sightings older than this are forgotten, s.
+    pub memory: f64,
+    /// Most sightings of an edge.
+    pub samples: usize,
+    /// Frames without a sighting after which an edge is forgotten.
+    pub patience: u32,
+    /// How new edges are refined.
+    pub fresh: Refinement,
+    /// How known edges are refined.
+    pub known: Refinement,
+    /// Largest deviation from vertical in the level frame, radians.
+    pub tilt: f64,
+    /// Two edges nearer than this are one, pixels.
+    pub apart: f64,
+}
+
+impl Default for Following {
+    fn default() -> Self {
+        let fresh = Refinement::default();
+        Self {
+            most: 96,
+            memory: 2.5,
+            samples: 80,
+            patience: 6,
+            fresh,
+            known: Refinement { reach: 2.0, support: 0.4, ..fresh },
+            tilt: 0.06,
+            apart: 3.0,
+        }
+    }
+}
+
+/// Carries the edges into the frame `image`: known ones where they are expected, then those of `segments` that are
+/// new. Ordered by x; the longest stay when there are more than `most`.
+pub fn follow(
+    tracks: Vec<EdgeTrack>,
+    image: &Gray,
+    segments: &[Segment],
+    moment: &Moment,
+    lens: &Lens,
+    how: &Following,
+) -> Vec<EdgeTrack> {
+    let mut next = tracks.iter().map(|t| t.id).max().map_or(0, |id| id.wrapping_add(1));
+    let mut kept: Vec<EdgeTrack> = Vec::with_capacity(tracks.len());
+    for mut track in tracks {
+        track.sights.retain(|s| s.time < moment.time && moment.time - s.time <= how.memory);
+        let found = expected(&track, moment.time)
+            .and_then(|at| seen(&at, lens, &moment.attitude))
+            .and_then(|line| refine(image, &line, &how.known))
+            .and_then(|edge| sight(&edge, moment, lens, how.tilt).map(|s| (edge, s)));
+        match found {
+            Some((edge, sight)) => {
+                track.edge = edge;
+                track.missed = 0;
+                track.sights.push(sight);
+                let surplus = track.sights.len().saturating_sub(how.samples.max(2));
+                track.sights.drain(..surplus);
+            }
+            None => track.missed += 1,
+        }
+        if track.missed <= how.patience && !track.sights.is_empty() {
+            kept.push(track);
+        }
+    }
+    // Of two tracks that have run into one the better known stays.
+    kept.sort_by(|a, b| b.sights.len().cmp(&a.sights.len()).then(a.id.cmp(&b.id)));
+    let mut tracks: Vec<EdgeTrack> = Vec::with_capacity(kept.len());
+    for track in kept {
+        if track.missed > 0 || !tracks.iter().any(|t| same(&t.edge.line, &track.edge.line, how.apart / 2.0)) {
+            tracks.push(track);
+        }
+    }
+    let mut fresh: Vec<&Segment> = segments.iter().collect();
+    fresh.sort_by(|a, b| b.length().total_cmp(&a.length()));
+    for segment in fresh {
+        if tracks.len() >= how.most {
+            break;
+        }
+        let known = |line: &Segment| tracks.iter().any(|t| same(&t.edge.line, line, how.apart));
+        if known(segment) {
+            continue;
+        }
+        let Some(edge) = refine(image, segment, &how.fresh) else { continue };
+        let Some(sight) = sight(&edge, moment, lens, how.tilt) else { continue };
+        if !known(&edge.line) {
+            tracks.push(EdgeTrack { id: next, edge, missed: 0, sights: vec![sight] });
+            next = next.wrapping_add(1);
+        }
+    }
+    tracks.sort_by(|a, b| a.edge.x(lens).total_cmp(&b.edge.x(lens)).then(a.id.cmp(&b.id)));
+    tracks
+}
+
+fn sight(edge: &Edge, moment: &Moment, lens: &Lens, tilt: f64) -> Option<EdgeSight> {
+    let upright = upright(&edge.line, lens, &moment.attitude)?;
+    (upright.tilt.abs() <= tilt).then_some(EdgeSight { time: moment.time, course: moment.course, upright })
+}
+
+/// Where the edge should stand at `time`: its bearing goes on as it went over its last sightings.
+fn expected(track: &EdgeTrack, time: f64) -> Option<Upright> {
+    let last = track.sights.last()?;
+    let before = &track.sights[track.sights.len().saturating_sub(6)];
+    let span = last.time - before.time;
+    let rate = if span > 1e-9 { wrap(last.upright.bearing - before.upright.bearing) / span } else { 0.0 };
+    // A thing ahead does not swing faster than this: a wild rate is noise.
+    let rate = if rate.abs() < 2.0 { rate } else { 0.0 };
+    Some(Upright { bearing: last.upright.bearing + rate * (time - last.time), ..last.upright })
+}
+
+/// Do two lines run within `apart` pixels of each other on rows that both have?
+fn same(a: &Segment, b: &Segment, apart: f64) -> bool {
+    let (from, to) = (a.top[1].max(b.top[1]), a.bottom[1].min(b.bottom[1]));
+    if to < from {
+        return false;
+    }
+    let y = (from + to) / 2.0;
+    (a.x_at(y) - b.x_at(y)).abs() <= apart
+}

@@ -1,0 +1,165 @@
+//! The services put together: a frame and the memory in, what is seen and the next memory out.
+
+use crate::contours::{Contours, verticals};
+use crate::edge::{Edge, nearest_pair};
+use crate::follow::{EdgeTrack, Following, Moment, follow};
+use crate::image::{Gray, ImageView};
+use crate::lens::Lens;
+use crate::obstacle::{Obstacle, Pairing, obstacles};
+use crate::points::{self, Flow};
+use crate::refine::{Refinement, refine};
+use crate::robust::PointTrack;
+use crate::why::Why;
+
+/// Parameters of [`look`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Looking {
+    /// Contours and segments.
+    pub contours: Contours,
+    /// Edges over frames.
+    pub edges: Following,
+    /// Edges to obstacles.
+    pub pairing: Pairing,
+    /// Points on the obstacle.
+    pub points: points::Following,
+}
+
+/// What is carried from frame to frame: a plain value, the caller's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Memory {
+    /// The time of the last frame, s.
+    pub time: Option<f64>,
+    /// The last frame in grey.
+    pub image: Option<Gray>,
+    /// Edges followed.
+    pub edges: Vec<EdgeTrack>,
+    /// Points followed on the nearest obstacle.
+    pub points: Vec<PointTrack>,
+}
+
+/// What is seen in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// All upright edges of this frame, from the left.
+    pub edges: Vec<Edge>,
+    /// The obstacles, nearest first, or why there is none.
+    pub obstacles: Result<Vec<Obstacle>, Why>,
+    /// Flow of points on the nearest obstacle since the last frame.
+    pub flows: Vec<Flow>,
+}
+
+/// Looks at a frame: edges are followed and paired, points on the nearest obstacle are followed. The next memory
+/// comes back; after an error go on from the old one with the next frame.
+///
+/// # Errors
+/// [`Why::Black`], [`Why::White`]; the interval's, when the frame is not newer than the last;
+/// [`Why::BadLens`], also for a lens with distortion (see [`crate::rectify`]); [`Why::WrongSize`] when the size has
+/// changed; [`Why::BadNumber`].
+pub fn look(
+    frame: &ImageView<'_>,
+    memory: &Memory,
+    moment: &Moment,
+    lens: &Lens,
+    how: &Looking,
+) -> Result<(Seen, Memory), Why> {
+    look_at(Gray::of(frame)?, memory, moment, lens, how)
+}
+
+/// As [`look`], for a frame that is grey already.
+///
+/// # Errors
+/// As [`look`].
+pub fn look_at(
+    image: Gray,
+    memory: &Memory,
+    moment: &Moment,
+    lens: &Lens,
+    how: &Looking,
+) -> Result<(Seen, Memory), Why> {
+    lens.check()?;
+    if lens.distortion.is_some() {
+        return Err(Why::BadLens);
+    }
+    if !moment.is_finite() {
+        return Err(Why::BadNumber);
+    }
+    if let Some(last) = memory.time {
+        crate::why::interval(moment.time - last)?;
+    }
+    if memory.image.as_ref().is_some_and(|i| (i.width(), i.height()) != (image.width(), image.height())) {
+        return Err(Why::WrongSize);
+    }
+    image.lit()?;
+    let segments = match verticals(&image, moment.attitude.roll, &how.contours) {
+        Ok(segments) => segments,
+        Err(Why::NoFeatures) => Vec::new(),
+        Err(why) => return Err(why),
+    };
+    let edges = follow(memory.edges.clone(), &image, &segments, moment, lens, &how.edges);
+    let found = obstacles(&edges, moment.course, lens, &how.pairing);
+    let mut followed = match &memory.image {
+        Some(previous) => {
+            points::advance(memory.points.clone(), previous, &image, moment, lens, &how.points)?
+        }
+        None => Vec::new(),
+    };
+    if let Some(nearest) = found.as_ref().ok().and_then(|list| list.first()) {
+        followed =
+            points::replenish(followed, &image, &nearest.left, &nearest.right, moment, lens, &how.points);
+    }
+    let seen = Seen {
+        edges: edges.iter().filter(|t| t.missed == 0).map(|t| t.edge).collect(),
+        obstacles: found,
+        flows: points::flows(&followed),
+    };
+    let memory = Memory { time: Some(moment.time), image: Some(image), edges, points: followed };
+    Ok((seen, memory))
+}
+
+/// The published detection, from two frames alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearestPair {
+    /// All refined near-vertical edges, the nearest to the optical centre first.
+    pub edges: Vec<Edge>,
+    /// The nearest on the left of the optical centre.
+    pub left: Edge,
+    /// The nearest on the right.
+    pub right: Edge,
+    /// Width at the optical row, pixels.
+    pub width: f64,
+    /// Flow of points on and between them.
+    pub flows: Vec<Flow>,
+}
+
+/// The published way (SOIFRA, Algorithm 1): contours, segments with α + roll ≈ 90°, the nearest one on each side of
+/// the optical centre, their sparse flow between two frames. `roll` is that of the present frame, radians.
+///
+/// # Errors
+/// [`Why::Black`], [`Why::White`], [`Why::NoFeatures`], [`Why::OneEdge`], [`Why::WrongSize`], [`Why::BadLens`],
+/// [`Why::BadNumber`].
+pub fn nearest(
+    previous: &Gray,
+    present: &Gray,
+    roll: f64,
+    lens: &Lens,
+    contours: &Contours,
+    how: &points::Following,
+) -> Result<NearestPair, Why> {
+    lens.check()?;
+    if previous.width() != present.width() || previous.height() != present.height() {
+        return Err(Why::WrongSize);
+    }
+    present.lit()?;
+    let refinement = Refinement::default();
+    let mut edges: Vec<Edge> =
+        verticals(present, roll, contours)?.iter().filter_map(|s| refine(present, s, &refinement)).collect();
+    edges.sort_by(|a, b| {
+        let away = |e: &Edge| (e.x(lens) - lens.cx).abs();
+        away(a).total_cmp(&away(b))
+    });
+    let (l, r) = nearest_pair(&edges, lens)?;
+    let (left, right) = (edges[l], edges[r]);
+    let chosen = points::choose(present, &left, &right, how);
+    let flows = points::flow(previous, present, &chosen, how)?;
+    Ok(NearestPair { width: right.x(lens) - left.x(lens), edges, left, right, flows })
+}

@@ -1,0 +1,132 @@
+//! How fast each edge closes in, from its bearing alone.
+//!
+//! A vertical edge at lateral offset X and distance Z is seen at the tangent q = X/Z off the direction of motion;
+//! with Z shrinking evenly q(t)·(1 − e·t) = q(0), e the inverse time to contact now. Edges of one face share e; a
+//! nearer thing has a greater e than what is behind it. This is what tells an obstacle's outline from the texture
+//! of a wall or a floor.
+
+use crate::attitude::wrap;
+use crate::expansion::Width;
+use crate::follow::EdgeTrack;
+
+/// An edge's closing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep {
+    /// Tangent of the bearing off the course now, left positive.
+    pub tangent: f64,
+    /// Inverse time to contact, 1/s.
+    pub closing: f64,
+    /// Its standard deviation from the scatter of the bearings, 1/s.
+    pub sigma: f64,
+}
+
+impl Sweep {
+    /// By how much the closing is off for each radian that the course is off, 1/s: the tangents of all edges are
+    /// then off by the same, and e = q̇/q.
+    pub fn bias(&self) -> f64 {
+        self.closing / if self.tangent.abs() < 1e-9 { 1e-9 } else { self.tangent }
+    }
+}
+
+/// Bearings of one edge as tangents off `course`, for the sightings since the motion last bent by more than `bend`
+/// radians and within `length` seconds of the last.
+pub fn tangents(track: &EdgeTrack, course: f64, bend: f64, length: f64) -> Vec<Width> {
+    let from = track.sights.iter().rposition(|s| wrap(s.course - course).abs() > bend).map_or(0, |k| k + 1);
+    let last = track.sights.last().map_or(0.0, |s| s.time);
+    track.sights[from..]
+        .iter()
+        .filter(|s| last - s.time <= length)
+        .filter_map(|s| {
+            let off = wrap(s.upright.bearing - course);
+            (off.abs() < 1.4).then(|| Width { time: s.time, width: libm::tan(off) })
+        })
+        .collect()
+}
+
+/// The closing of one edge from its tangents; `noise` is the smallest noise of a tangent. `None` for fewer than
+/// `fewest` sightings.
+pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
+    let now = tangents.last()?.time;
+    if tangents.len() < fewest.max(3) {
+        return None;
+    }
+    // q = q0 + e·(t·q): a straight line over the abscissa t·q.
+    let n = tangents.len() as f64;
+    let abscissa = |s: &Width| (s.time - now) * s.width;
+    let mx = tangents.iter().map(abscissa).sum::<f64>() / n;
+    let my = tangents.iter().map(|s| s.width).sum::<f64>() / n;
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for s in tangents {
+        let x = abscissa(s) - mx;
+        xx += x * x;
+        xy += x * (s.width - my);
+    }
+    if !(xx > 1e-18) {
+        return None;
+    }
+    let closing = xy / xx;
+    let tangent = my - closing * mx;
+    let squares: f64 = tangents
+        .iter()
+        .map(|s| {
+            let r = s.width - tangent - closing * abscissa(s);
+            r * r
+        })
+        .sum();
+    let scatter = (squares / (n - 2.0)).max(noise * noise);
+    let sigma = libm::sqrt(scatter / xx);
+    (closing.is_finite() && sigma.is_finite() && tangent.is_finite()).then_some(Sweep {
+        tangent,
+        closing,
+        sigma,
+    })
+}
+
+/// The latest part of a history that one closing explains. A track may have changed over to another edge that it
+/// met, and the robot may have sped up: where an early and a late part of the history disagree beyond their noise
+/// only the later one counts, cut where they disagree most; and so on with that.
+pub fn settled(tangents: &[Width], fewest: usize, noise: f64) -> &[Width] {
+    let fewest = fewest.max(5);
+    let mut rest = tangents;
+    while rest.len() >= 2 * fewest {
+        let worst = (1..6)
+            .map(|k| (rest.len() * k / 6).clamp(fewest, rest.len() - fewest))
+            .map(|at| (disagreement(&rest[..at], &rest[at..], fewest, noise), at))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((size, at)) if size > 1.0 => rest = &rest[at..],
+            _ => break,
+        }
+    }
+    rest
+}
+
+/// By how much two parts of a history disagree, in units of what their noise allows.
+fn disagreement(early: &[Width], late: &[Width], fewest: usize, noise: f64) -> f64 {
+    let (Some(before), Some(now)) = (sweep(early, fewest, noise), sweep(late, fewest, noise)) else {
+        return 0.0;
+    };
+    // The early part speaks of its own end: brought to the present, e grows as the distance shrinks.
+    let gap = late[late.len() - 1].time - early[early.len() - 1].time;
+    let base = 1.0 - before.closing * gap;
+    if base <= 0.1 {
+        return 0.0;
+    }
+    let doubt = 5.0 * libm::hypot(before.sigma / (base * base), now.sigma) + 0.1 * now.closing.abs();
+    (before.closing / base - now.closing).abs() / doubt
+}
+
+/// The width between two edges at the times both were seen: difference of the tangents, left minus right.
+pub fn widths(left: &[Width], right: &[Width]) -> Vec<Width> {
+    let mut widths = Vec::with_capacity(left.len().min(right.len()));
+    let mut k = 0;
+    for l in left {
+        while k < right.len() && right[k].time < l.time {
+            k += 1;
+        }
+        if k < right.len() && right[k].time == l.time {
+            widths.push(Width { time: l.time, width: l.width - right[k].width });
+        }
+    }
+    widths
+}

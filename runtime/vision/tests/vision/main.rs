@@ -1,0 +1,9 @@
+//! The suite of the vision crate.
+#![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "tests print their figures; 2026-11-23")]
+#![allow(clippy::unwrap_used, reason = "tests; 2026-11-23")]
+
+mod approach;
+mod contact;
+mod geometry;
+mod robustness;
+mod scene;
