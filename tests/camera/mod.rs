@@ -38,8 +38,8 @@ mission look {
   world square_room
   robot scout: ardrone2 at (-9 m, 0.3 m) runs pilot
   robot other: turtlebot2 at (-6.5 m, 0 m) runs driver
-  goal light { subgoal seen by pilot achieved when light > 0.2 and change > -1 and now > 3.4 s }
-  done when achieved(light)
+  goal light { subgoal seen by pilot achieved when light > 0.2 and change > -1 }
+  done when now > 3.5 s and achieved(light)
   within 10 s
 }
 ";
