@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
-use opencv::core::{Mat, Point2f, Size, TermCriteria, ToInputArray, Vec4i, Vector};
+use opencv::core::{self, Mat, Point2f, Scalar, Size, TermCriteria, ToInputArray, Vec4i, Vector};
 use opencv::{imgproc, video};
 use soifra_vision::contours::{Contours, Thresholds, thresholds, verticals};
 use soifra_vision::follow::Moment;
@@ -51,8 +51,13 @@ fn view(rgb: &[u8]) -> ImageView<'_> {
 
 /// The bare calls of the detection: Canny with the thresholds that the service uses, Hough.
 fn detect(gray: &impl ToInputArray, (low, high): (f64, f64), how: &Contours) -> Vector<Vec4i> {
-    let mut contours = Mat::default();
-    imgproc::canny(gray, &mut contours, low, high, 3, false).expect("canny");
+    let (mut across, mut contours) = (Mat::default(), Mat::default());
+    let border = core::BORDER_REPLICATE;
+    imgproc::sobel(gray, &mut across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border).expect("sobel");
+    let (rows, columns) = (HEIGHT as i32, WIDTH as i32);
+    let along =
+        Mat::new_rows_cols_with_default(rows, columns, core::CV_16S, Scalar::all(0.0)).expect("zeros");
+    imgproc::canny_derivative(&across, &along, &mut contours, low, high, false).expect("canny");
     let mut lines = Vector::new();
     let step = std::f64::consts::PI / 180.0;
     imgproc::hough_lines_p(&contours, &mut lines, 1.0, step, how.votes, how.shortest, how.gap)

@@ -140,7 +140,7 @@ pub fn obstacles(
         .filter(|t| t.missed == 0)
         .filter_map(|track| {
             let tangents = tangents(track, course, how.bend, how.window.length);
-            let tangents = settled(&tangents, how.fewest, noise).to_vec();
+            let tangents = settled(&tangents, how.fewest, how.shortest, 5.0 * noise).to_vec();
             let long = tangents.last()?.time - tangents.first()?.time >= how.shortest;
             let sweep = sweep(&tangents, how.fewest, noise).filter(|s| long && stands(track, s, how))?;
             Some(Candidate { track, tangents, sweep })
@@ -213,6 +213,10 @@ fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) 
     if (l.sweep.closing - r.sweep.closing).abs() > doubt(l, r, how) + how.difference * l.sweep.closing.abs() {
         return None;
     }
+    // What the neighbours say costs less than a fit, and settles most pairs.
+    let before = candidates[..left].iter().rev().find(|c| beside(l, c));
+    let after = candidates[right + 1..].iter().find(|c| beside(r, c));
+    let beyond = [beyond(l, before, how)?, beyond(r, after, how)?];
     let widths = widths(&l.tangents, &r.tangents);
     let span = widths.last()?.time - widths.first()?.time;
     if widths.len() < how.fewest || span < how.shortest {
@@ -236,9 +240,6 @@ fn pair(candidates: &[Candidate<'_>], left: usize, right: usize, how: &Pairing) 
     {
         return None;
     }
-    let before = candidates[..left].iter().rev().find(|c| beside(l, c));
-    let after = candidates[right + 1..].iter().find(|c| beside(r, c));
-    let beyond = [beyond(l, before, how)?, beyond(r, after, how)?];
     let against = |c: &Candidate<'_>| ((c.sweep.closing - closing).abs() - c.sweep.sigma).max(0.0);
     let sigma = closing * contact.sigma / contact.ttc;
     let near = closing - against(l) - against(r) - sigma;

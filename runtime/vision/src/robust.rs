@@ -94,6 +94,13 @@ struct Pair {
     both: bool,
 }
 
+impl Pair {
+    /// The axes that count.
+    fn axes(&self) -> &'static [usize] {
+        if self.both { &[0, 1] } else { &[0] }
+    }
+}
+
 /// From the history of points. `time` (s), `course` (azimuth of the motion in the level frame, radians) and `rates`
 /// are those of the last frame; points not seen in it are left out. Points on edges count across the edge only
 /// (along it they say nothing).
@@ -266,7 +273,7 @@ fn spread(pairs: &[Pair], e: f64, focus: [f64; 2], round: usize) -> f64 {
     let mut sizes: Vec<f64> = Vec::with_capacity(2 * pairs.len());
     for p in pairs {
         let share = e * p.baseline / (1.0 + e * p.baseline);
-        for k in 0..if p.both { 2 } else { 1 } {
+        for &k in p.axes() {
             sizes.push((p.now[k] - p.then[k] - (p.now[k] - focus[k]) * share).abs());
         }
     }
@@ -293,7 +300,7 @@ fn step(pairs: &[Pair], e: f64, focus: [f64; 2], scale: f64) -> Option<Step> {
         }
         let gain = p.baseline / base;
         let mut counts = false;
-        for k in 0..if p.both { 2 } else { 1 } {
+        for &k in p.axes() {
             let moved = p.now[k] - p.then[k];
             let residual = moved - gain * e * (p.now[k] - focus[k]);
             let w = tukey(residual / scale);

@@ -84,13 +84,15 @@ pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
 
 /// The latest part of a history that one closing explains. A track may have changed over to another edge that it
 /// met, and the robot may have sped up: where an early and a late part of the history disagree beyond their noise
-/// only the later one counts, cut where they disagree most; and so on with that.
-pub fn settled(tangents: &[Width], fewest: usize, noise: f64) -> &[Width] {
+/// only the later one counts, cut where they disagree most; and so on with that. What is left spans at least `shortest`
+/// seconds. `noise` is the error of a tangent that may last (the background moving past the edge pulls at it).
+pub fn settled(tangents: &[Width], fewest: usize, shortest: f64, noise: f64) -> &[Width] {
     let fewest = fewest.max(5);
     let mut rest = tangents;
     while rest.len() >= 2 * fewest {
         let worst = (1..6)
             .map(|k| (rest.len() * k / 6).clamp(fewest, rest.len() - fewest))
+            .filter(|&at| rest[rest.len() - 1].time - rest[at].time >= shortest)
             .map(|at| (disagreement(&rest[..at], &rest[at..], fewest, noise), at))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         match worst {
