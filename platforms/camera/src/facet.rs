@@ -5,10 +5,10 @@
 //! are the same for a triangle that passes through the camera's plane.
 
 use crate::clip::{MOST_CORNERS, Outline};
-use crate::geometry::{Point, Pose, Rotation, cross, dot, scale, subtract};
+use crate::geometry::{Point, Pose, Rotation, add, cross, dot, scale, subtract};
 use crate::lens::Lens;
 use crate::light::Light;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, NO_TRIANGLE};
 use crate::scene::{PartPose, Scene};
 
 /// Metres before the camera below which nothing is seen.
@@ -55,6 +55,8 @@ pub(crate) struct Facet {
     pub rows: (i32, i32),
     /// One for each side: how many pixels within it; negative beyond.
     pub sides: [Linear; 3],
+    /// The facet beyond each side that faces the camera too, or [`NO_TRIANGLE`].
+    pub beyond: [u32; 3],
     /// One over depth in metres.
     pub inverse_depth: Linear,
     /// Inverse depth of its farthest and its nearest point.
@@ -225,6 +227,7 @@ impl Facet {
             count: outline.corners().len(),
             rows,
             sides: sides.map(in_pixels),
+            beyond: [NO_TRIANGLE; 3],
             inverse_depth,
             farthest: farthest as f32,
             nearest: nearest as f32,
@@ -260,24 +263,32 @@ pub(crate) fn first_centre(place: i32) -> i32 {
     (place + SUBPIXELS / 2 - 1).div_euclid(SUBPIXELS)
 }
 
-/// All facets of a frame, in the order of the scene: of two at the same depth the first is seen.
+/// All facets of a frame, in the order of the scene: of two at the same depth the first is seen. `numbers` is
+/// memory to work in.
 pub(crate) fn collect(
     scene: &Scene,
     parts: &[PartPose],
     optics: &Optics,
     light: &Light,
     facets: &mut Vec<Facet>,
+    numbers: &mut Vec<u32>,
 ) {
     facets.clear();
     let origin = Pose { position: [0.0; 3], rotation: Rotation::IDENTITY };
-    add_mesh(&scene.fixed, &origin, optics, light, scene, facets);
-    for placed in parts {
-        if let Some(mesh) = scene.part(placed.part) {
-            add_mesh(mesh, &placed.pose, optics, light, scene, facets);
+    let placed = parts.iter().filter_map(|placed| Some((scene.part(placed.part)?, &placed.pose)));
+    for (mesh, pose) in [(&scene.fixed, &origin)].into_iter().chain(placed) {
+        numbers.clear();
+        let first = facets.len();
+        add_mesh(mesh, pose, optics, light, scene, facets, numbers);
+        for facet in &mut facets[first..] {
+            facet.beyond =
+                facet.beyond.map(|triangle| numbers.get(triangle as usize).copied().unwrap_or(NO_TRIANGLE));
         }
     }
 }
 
+/// Adds a mesh's facets, with the numbers of triangles beyond their sides, and notes for each triangle the number of
+/// its facet.
 fn add_mesh(
     mesh: &Mesh,
     pose: &Pose,
@@ -285,21 +296,21 @@ fn add_mesh(
     light: &Light,
     scene: &Scene,
     facets: &mut Vec<Facet>,
+    numbers: &mut Vec<u32>,
 ) {
     let still = pose.rotation == Rotation::IDENTITY;
     let rotation = pose.rotation.matrix();
     let turn = |p: Point| if still { p } else { rotation.map(|row| dot(row, p)) };
-    let place = |p: Point| {
-        let p = turn(p);
-        [p[0] + pose.position[0], p[1] + pose.position[1], p[2] + pose.position[2]]
-    };
     for triangle in &mesh.triangles {
-        let corners = triangle.corners.map(|corner| optics.see(place(corner)));
-        if let (Some(facet), true) =
-            (Facet::new(optics, corners, &triangle.uv), scene.texture(triangle.texture).is_some())
-        {
-            let shade = light.shade(turn(triangle.normal));
-            facets.push(Facet { texture: triangle.texture.0, shade, ..facet });
-        }
+        let corners = triangle.corners.map(|corner| optics.see(add(turn(corner), pose.position)));
+        let facet =
+            Facet::new(optics, corners, &triangle.uv).filter(|_| scene.texture(triangle.texture).is_some());
+        numbers.push(if facet.is_some() { facets.len() as u32 } else { NO_TRIANGLE });
+        facets.extend(facet.map(|facet| Facet {
+            texture: triangle.texture.0,
+            shade: light.shade(turn(triangle.normal)),
+            beyond: triangle.beyond,
+            ..facet
+        }));
     }
 }

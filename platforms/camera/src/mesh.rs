@@ -1,5 +1,7 @@
 //! Triangles, and the shapes that are built of them.
 
+use std::collections::BTreeMap;
+
 use crate::geometry::{Point, Pose, Rotation, add, cross, dot, subtract, unit};
 use crate::scene::TextureIndex;
 
@@ -22,13 +24,23 @@ pub(crate) struct Triangle {
     /// Of unit length, out of the face.
     pub normal: Point,
     pub texture: TextureIndex,
+    /// The triangle of the mesh beyond the side opposite each corner, or [`NO_TRIANGLE`].
+    pub beyond: [u32; 3],
 }
+
+/// Where a mesh ends.
+pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
+
+/// A side from corner to corner, by the bits of their coordinates.
+type Side = [[u64; 3]; 2];
 
 /// Triangles in one frame, metres. Each is seen from one side only, and so are the shapes: from outside a box,
 /// from inside a room.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     pub(crate) triangles: Vec<Triangle>,
+    /// Sides that no other triangle has met yet, with their triangle and the corner opposite.
+    open: BTreeMap<Side, (u32, usize)>,
 }
 
 impl Mesh {
@@ -61,8 +73,27 @@ impl Mesh {
         let area = cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0]));
         let finite = uv.iter().flatten().all(|c| c.is_finite());
         if let (Some(normal), true) = (unit(area), finite) {
-            self.triangles.push(Triangle { corners, uv, normal, texture });
+            let beyond = self.meet(&corners);
+            self.triangles.push(Triangle { corners, uv, normal, texture, beyond });
         }
+    }
+
+    /// Finds the triangles that the sides of a new one have in common with it, and notes it for those to come.
+    fn meet(&mut self, corners: &[Point; 3]) -> [u32; 3] {
+        let new = self.triangles.len() as u32;
+        // Adding zero makes one zero of the two.
+        let [a, b, c] = corners.map(|corner| corner.map(|v| (v + 0.0).to_bits()));
+        let mut beyond = [NO_TRIANGLE; 3];
+        for (opposite, [from, to]) in [[b, c], [c, a], [a, b]].into_iter().enumerate() {
+            // Two triangles with the same front go along their common side in opposite ways.
+            if let Some((other, opposite_there)) = self.open.remove(&[to, from]) {
+                beyond[opposite] = other;
+                self.triangles[other as usize].beyond[opposite_there] = new;
+            } else {
+                self.open.insert([from, to], (new, opposite));
+            }
+        }
+        beyond
     }
 
     /// A flat face whose corners go round to the left as seen from its visible side. Its texture begins at the
@@ -203,7 +234,7 @@ fn faces_away(mesh: &Mesh, centre: Point) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Mesh, Surface, faces_away};
+    use super::{Mesh, NO_TRIANGLE, Surface, faces_away};
     use crate::scene::TextureIndex;
 
     const SURFACE: Surface = Surface { texture: TextureIndex(0), repeat: 2.0 };
@@ -231,6 +262,21 @@ mod tests {
         }
         assert_eq!(mesh.len(), 12);
         assert!(faces_away(&mesh, [0.0, 0.0, 1.5]));
+    }
+
+    #[test]
+    fn triangles_know_what_is_beyond_their_sides() {
+        let mut mesh = Mesh::new();
+        mesh.cuboid([1.0, 2.0, 3.0], [1.0, 2.0, 4.0], 0.7, SURFACE);
+        mesh.cylinder([5.0, 2.0, 0.0], 0.5, 2.0, 7, SURFACE);
+        for (number, triangle) in mesh.triangles.iter().enumerate() {
+            for other in triangle.beyond {
+                assert!(mesh.triangles[other as usize].beyond.contains(&(number as u32)));
+            }
+        }
+        let mut ground = Mesh::new();
+        ground.ground([0.0, 0.0], [1.0, 1.0], 0.0, SURFACE);
+        assert_eq!(ground.triangles[0].beyond, [NO_TRIANGLE, 1, NO_TRIANGLE]);
     }
 
     #[test]

@@ -43,6 +43,7 @@ pub struct View<'a> {
 #[derive(Default)]
 pub struct Scratch {
     facets: Vec<Facet>,
+    numbers: Vec<u32>,
     /// For each strip, the facets that may be seen in it.
     bins: Vec<Vec<u32>>,
     /// One for each band.
@@ -114,8 +115,8 @@ fn straight(
         image.data.fill(0);
         return;
     };
-    let Scratch { facets, bins, strips, .. } = scratch;
-    collect(scene, parts, &optics, view.light, facets);
+    let Scratch { facets, numbers, bins, strips, .. } = scratch;
+    collect(scene, parts, &optics, view.light, facets, numbers);
     sort_into_bins(facets, height, bins);
     let (facets, bins, exposure) = (&*facets, &*bins, view.light.exposure());
 

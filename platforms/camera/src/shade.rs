@@ -8,7 +8,7 @@ use crate::texture::{Level, Texture};
 use crate::visibility::{NOTHING, Strip};
 
 /// Pixels that share one level of detail.
-const SPAN: usize = 8;
+const SPAN: usize = 16;
 
 /// Fills in the colours of a strip.
 pub(crate) fn shade(
@@ -154,7 +154,8 @@ impl Here {
 const MOST_TEXELS: f64 = 1e30;
 
 /// The numbers of a span's pixels.
-const ALONG: [f32; SPAN] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+const ALONG: [f32; SPAN] =
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
 
 /// The nearest whole number, modulo 2³², of one that is not beyond ±2²²; else some number.
 ///

@@ -78,7 +78,7 @@ fn mixed(strip: &Strip, facets: &[Facet], row: usize, x: usize) -> Colour {
         if other == number {
             continue;
         }
-        let share = share(facets.get(number as usize), facets.get(other as usize), centre, toward);
+        let share = share(facets, facets.get(number as usize), facets.get(other as usize), centre, toward);
         // Of a pixel with edges on all sides there is no more to give than there is.
         let share = share.min(WHOLE - given);
         add(&mut sum, strip.colours[neighbour], share);
@@ -95,7 +95,13 @@ fn add(sum: &mut [u32; 3], colour: Colour, share: u32) {
 }
 
 /// The share of the neighbour's colour in a pixel: what lies beyond the edge between them.
-fn share(own: Option<&Facet>, other: Option<&Facet>, centre: [f64; 2], toward: [f64; 2]) -> u32 {
+fn share(
+    facets: &[Facet],
+    own: Option<&Facet>,
+    other: Option<&Facet>,
+    centre: [f64; 2],
+    toward: [f64; 2],
+) -> u32 {
     if let (Some(own), Some(other)) = (own, other)
         && own.continues(other)
     {
@@ -104,8 +110,8 @@ fn share(own: Option<&Facet>, other: Option<&Facet>, centre: [f64; 2], toward: [
     let next = [centre[0] + toward[0], centre[1] + toward[1]];
     let middle = [(centre[0] + next[0]) / 2.0, (centre[1] + next[1]) / 2.0];
     let depth = |facet: Option<&Facet>| facet.map_or(0.0, |f| f.inverse_depth_at(middle[0], middle[1]));
-    let leaving = || own.and_then(|facet| leave(facet, centre, next));
-    let entering = || other.and_then(|facet| leave(facet, next, centre)).map(|(way, edge)| (1.0 - way, edge));
+    let leaving = || leave(facets, own?, other, centre, next);
+    let entering = || leave(facets, other?, own, next, centre).map(|(way, edge)| (1.0 - way, edge));
     // Behind, a facet goes on unseen: only the nearer one's edge is the silhouette.
     let met =
         if depth(own) >= depth(other) { leaving().or_else(entering) } else { entering().or_else(leaving) };
@@ -121,16 +127,43 @@ fn share(own: Option<&Facet>, other: Option<&Facet>, centre: [f64; 2], toward: [
 /// Pixels by which a centre may seem to be on the other side of an edge: corners were rounded when it was decided.
 const TRACE: f64 = 1.0 / 64.0;
 
-/// How far on the way from inside a facet to outside its edge is, and which edge.
-fn leave(facet: &Facet, inside: [f64; 2], outside: [f64; 2]) -> Option<(f64, Linear)> {
+/// Facets that a way of one pixel leads over before it is given up.
+const MOST_FACETS: usize = 8;
+
+/// How far on the way from inside a facet to a place that sees another one its surface ends, and by which edge.
+///
+/// The surface goes on over the facet's side if there is a facet beyond that faces the camera too, though it may be
+/// so narrow that no pixel's centre sees it, as at the limb of a cylinder.
+fn leave(
+    facets: &[Facet],
+    facet: &Facet,
+    other: Option<&Facet>,
+    inside: [f64; 2],
+    outside: [f64; 2],
+) -> Option<(f64, Linear)> {
+    let (mut facet, mut from) = (facet, 0.0);
+    for _ in 0..MOST_FACETS {
+        let (way, side) = cross(facet, inside, outside)?;
+        from = if way > from { way } else { from };
+        let edge = facet.sides[side];
+        match facets.get(facet.beyond[side] as usize) {
+            Some(next) if !other.is_some_and(|other| next.continues(other)) => facet = next,
+            _ => return Some((from, edge)),
+        }
+    }
+    None
+}
+
+/// How far on the way out of a facet its first side is met, and which side.
+fn cross(facet: &Facet, inside: [f64; 2], outside: [f64; 2]) -> Option<(f64, usize)> {
     let mut first = None;
-    for side in &facet.sides {
+    for (number, side) in facet.sides.iter().enumerate() {
         let beyond = at(side, outside[0], outside[1]);
         let within = at(side, inside[0], inside[1]);
         if beyond < TRACE && beyond < within {
             let way = (within / (within - beyond)).clamp(0.0, 1.0);
             if first.is_none_or(|(nearest, _)| way < nearest) {
-                first = Some((way, *side));
+                first = Some((way, number));
             }
         }
     }

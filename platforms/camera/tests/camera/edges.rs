@@ -57,6 +57,27 @@ proptest! {
         }
     }
 
+    /// Beside the face, the box shows a side so narrow that few pixels' centres see it, or none: the silhouette is
+    /// that side's far edge all the same.
+    #[test]
+    fn a_narrow_side_belongs_to_the_silhouette(aside in 1.0..1.05_f64, yaw in -0.05..0.2_f64) {
+        let eye = Pose::upright([0.0; 3], yaw);
+        let image = frame(&boxed(aside, 0.0), &[], &lens(), eye, Filter::Mipmap, 1);
+        // The right edge of the front and of the back; the farther right of them is the silhouette.
+        let seen = |x: f64| {
+            let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+            let y = aside - 1.0;
+            320.0 - 500.0 * (cos * y - sin * x) / (cos * x + sin * y)
+        };
+        let right = seen(4.0).max(seen(5.0));
+        let measured = white(&image, 0..640, 240..241);
+        let left = 320.0 - 500.0 * {
+            let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+            (cos * (aside + 1.0) - sin * 4.0) / (cos * 4.0 + sin * (aside + 1.0))
+        };
+        prop_assert!((measured - (right - left)).abs() < 0.05, "{measured} {}", right - left);
+    }
+
     /// Two faces that share a silhouette or hide each other leave no crack and no seam.
     #[test]
     fn a_closed_box_around_the_camera_has_no_cracks(
