@@ -175,7 +175,9 @@ fn every_function_has_its_value() {
         }
         covered.insert(f);
     }
-    let missing: Vec<_> = FUNCTIONS.iter().filter(|(f, _, _)| !covered.contains(f)).collect();
+    // Services are computed elsewhere.
+    let own = FUNCTIONS.iter().filter(|(f, _, _)| !f.is_service());
+    let missing: Vec<_> = own.filter(|(f, _, _)| !covered.contains(f)).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }
 
