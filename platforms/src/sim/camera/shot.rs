@@ -61,11 +61,14 @@ pub struct Desk {
     scratch: Scratch,
 }
 
+/// What the thread is to take, and where to.
+type Job = (Order, SyncSender<Option<Frame>>);
+
 /// Takes the images of a run.
 pub struct Cameraman {
     studio: Arc<Studio>,
     desk: Desk,
-    thread: Option<(SyncSender<(Order, SyncSender<Option<Frame>>)>, JoinHandle<()>)>,
+    thread: Option<(SyncSender<Job>, JoinHandle<()>)>,
 }
 
 /// An image that has been ordered.
@@ -88,7 +91,7 @@ impl Cameraman {
     pub fn new(studio: Studio, threads: usize) -> Cameraman {
         let studio = Arc::new(studio);
         let thread = (threads > 1).then(|| {
-            let (orders, receiver) = sync_channel::<(Order, SyncSender<Option<Frame>>)>(WAITING);
+            let (orders, receiver) = sync_channel::<Job>(WAITING);
             let studio = Arc::clone(&studio);
             let work = move || {
                 let mut desk = Desk::default();
