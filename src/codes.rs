@@ -163,6 +163,11 @@ pub const PAGES: &[Page] = &[
         "`soifra run --realtime` takes inputs on standard input, one a line: `kill AGENT@ROBOT` ends an agent, `set NAME=VALUE` changes a parameter of the mission (the value with its unit, as for `--set`), `stop` ends the run with every robot's safe action. Any other line is told and changes nothing, and so is one that comes when the run is over. A line has at most 4096 bytes and is UTF-8. A run whose standard input is not meant for it is given none: `< /dev/null`.",
     ),
     page(
+        "S9029",
+        "A service is not in this program",
+        "The mission calls a function that is computed by a library which this program was built without. Vision services (`look`, `contact_by_expansion`, …) come with the feature `vision`, which is on by default and needs OpenCV; `make` installs it.",
+    ),
+    page(
         "S9999",
         "A defect of soifra",
         "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files.",

@@ -3,6 +3,7 @@
 use crate::{
     files, graph_file, relative,
     report::{Findings, Refusal},
+    services,
 };
 use soifra_graph::{Diagnostic, Graph, Severity, Span, Value, did_you_mean};
 use soifra_lang::{CheckOptions, TestCase};
@@ -118,7 +119,9 @@ pub fn check_with(path: &str, options: &CheckOptions, timings: &mut Timings) -> 
     if let Some(graph) = &mut checked.graph {
         relative::name_from(path, &mut graph.sources);
     }
-    let findings = Findings { diagnostics: checked.diagnostics, sources: checked.sources };
+    let mut diagnostics = checked.diagnostics;
+    diagnostics.extend(checked.graph.iter().flat_map(services::missing));
+    let findings = Findings { diagnostics, sources: checked.sources };
     if findings.errors() > 0 {
         return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
     }
@@ -139,7 +142,9 @@ fn load(path: &str, text: &str, options: &CheckOptions, timings: &mut Timings) -
     if options.timing {
         timings.extend(soifra_lang::schedule::of_graph(&graph).map(|t| (graph.name.to_string(), t)));
     }
-    let findings = Findings { diagnostics: soifra_lang::verify(&graph), sources: graph.sources.clone() };
+    let mut diagnostics = soifra_lang::verify(&graph);
+    diagnostics.extend(services::missing(&graph));
+    let findings = Findings { diagnostics, sources: graph.sources.clone() };
     if findings.errors() > 0 {
         return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
     }

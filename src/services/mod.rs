@@ -3,7 +3,8 @@
 #[cfg(feature = "vision")]
 mod vision;
 
-use soifra_graph::{Function, eval::FaultKind};
+use soifra_graph::{Diagnostic, Expr, Function, Graph, Op, eval::FaultKind};
+use soifra_lang::check::walk;
 use soifra_runtime::objects::{Frame, Services, Shelf};
 
 /// All services of this program.
@@ -31,6 +32,30 @@ impl Services for Everything {
             _ => Err(FaultKind::Unavailable("vision: this program was built without it")),
         }
     }
+}
+
+/// What a graph calls that this program was built without.
+pub fn missing(graph: &Graph) -> Vec<Diagnostic> {
+    let mut out: Vec<Diagnostic> = Vec::new();
+    if cfg!(feature = "vision") {
+        return out;
+    }
+    let mut look = |e: &Expr| {
+        if let Op::Builtin(f) = e.op
+            && f.is_service()
+            && f != Function::Brightness
+        {
+            let name = &f.signature().name;
+            out.push(
+                Diagnostic::error("S9029", format!("there is no `{name}` in this program"))
+                    .at(e.span, "a vision service; the program was built without them")
+                    .hint("build it with the feature `vision`, which needs OpenCV: `cargo build --release`"),
+            );
+        }
+    };
+    graph.agents.iter().for_each(|a| walk::agent(a, &mut look));
+    graph.functions.iter().for_each(|f| f.body.walk(&mut look));
+    out
 }
 
 /// The mean of all channels, 0 to 1.
