@@ -67,6 +67,11 @@ fn settle(p: Pattern) -> Option<Type> {
 }
 
 impl Pattern {
+    /// Whether it is an opaque type, whose values only services look into.
+    pub fn is_opaque(&self) -> bool {
+        matches!(self, Pattern::Exact(Type::Handle(name)) if OPAQUE.contains(&&**name))
+    }
+
     /// Parses a pattern such as `List<Point<F>, N>`.
     pub fn parse(text: &str) -> Result<Pattern, String> {
         parse_nested(text.trim(), 32)

@@ -2,11 +2,14 @@
 //!
 //! A unit that a reading, event or message releases adds its response time. A periodic unit that looks for
 //! news by itself adds its period before: the news may come just after it looked. What a unit leaves in a
-//! state, topic or event is taken up by the units that read it.
+//! state, topic, event or parameter, tells another agent of the robot or says in a conversation is taken up by the
+//! units that read or await it.
 
 use super::{Core, nanoseconds, sensor_times};
 use crate::check::{Constants, walk};
-use soifra_graph::{Agent, Expr, Graph, Name, Op, RobotGroup, StmtKind, Trigger, Unit};
+use soifra_graph::{
+    Agent, Component, Expr, Graph, Name, Op, RobotGroup, StmtKind, Talk, Trigger, Type, Unit,
+};
 
 /// A chain of units between a sensor and an actuator.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +53,36 @@ enum News {
     State(u32, u32),
     Event(u32, u32),
     Topic(u32),
+    Param(u32),
+    /// Told by an agent, any when absent, to another: performative and record.
+    Told {
+        from: Option<Name>,
+        to: Name,
+        performative: Name,
+        content: Name,
+    },
+    /// Said in a conversation.
+    Said {
+        conversation: u32,
+        performative: Name,
+    },
 }
+
+impl News {
+    /// Whether it is what somebody waits for.
+    fn is(&self, awaited: &News) -> bool {
+        match (self, awaited) {
+            (
+                News::Told { to, performative, content, .. },
+                News::Told { from: None, to: t, performative: p, content: c },
+            ) => (to, performative, content) == (t, p, c),
+            _ => self == awaited,
+        }
+    }
+}
+
+/// What a message takes on a told way or a channel that says nothing else (ns).
+const SHORTEST: i64 = 1_000;
 
 struct Node<'g> {
     agent: &'g Agent,
@@ -127,7 +159,7 @@ impl Search<'_, '_> {
     fn follow(&mut self, news: &News, delay: i64) {
         for i in 0..self.nodes.len() {
             let n = &self.nodes[i];
-            let released = n.released_by.as_ref() == Some(news);
+            let released = n.released_by.as_ref().is_some_and(|awaited| news.is(awaited));
             if (!released && !n.reads.contains(news)) || self.path.iter().any(|(j, _)| *j == i) {
                 continue;
             }
@@ -167,6 +199,17 @@ impl Search<'_, '_> {
     }
 }
 
+/// How long a message travels.
+fn delay(channel: Option<&Component>, known: &mut Constants<'_>) -> i64 {
+    let delay = channel.and_then(|c| c.args.iter().find(|(n, _)| &**n == "delay"));
+    delay.and_then(|(_, e)| nanoseconds(known, e, &[])).unwrap_or(SHORTEST).max(SHORTEST)
+}
+
+fn said(g: &Graph, conversation: u32, performative: &Name, known: &mut Constants<'_>) -> (News, i64) {
+    let channel = g.conversations.get(conversation as usize).map(|c| &c.channel);
+    (News::Said { conversation, performative: performative.clone() }, delay(channel, known))
+}
+
 fn nodes<'g>(
     g: &'g Graph,
     group: &'g RobotGroup,
@@ -183,6 +226,16 @@ fn nodes<'g>(
                 Trigger::Reading(p) => sensor(*p),
                 Trigger::Event(e) => Some(News::Event(a, *e)),
                 Trigger::Message { topic, .. } => Some(News::Topic(*topic)),
+                Trigger::Param(p) => Some(News::Param(*p)),
+                Trigger::Told { performative, content, from, .. } => Some(News::Told {
+                    from: from.clone(),
+                    to: agent.name.clone(),
+                    performative: performative.clone(),
+                    content: content.clone(),
+                }),
+                Trigger::Talk { conversation, what: Talk::Message { performative, .. }, .. } => {
+                    Some(News::Said { conversation: *conversation, performative: performative.clone() })
+                }
                 _ => None,
             };
             let period = match &unit.trigger {
@@ -195,6 +248,7 @@ fn nodes<'g>(
                 Op::Reading(p) => reads.extend(sensor(p)),
                 Op::State(s) => reads.push(News::State(a, s)),
                 Op::Heard(t) => reads.push(News::Topic(t)),
+                Op::Param(p) => reads.push(News::Param(p)),
                 _ => {}
             });
             reads.sort();
@@ -206,10 +260,21 @@ fn nodes<'g>(
                     StmtKind::Raise(e) => leaves.push((News::Event(a, *e), 0)),
                     StmtKind::Publish(t, _) => {
                         let channel = g.topics.get(*t as usize).map(|t| &t.channel);
-                        let delay = channel.and_then(|c| c.args.iter().find(|(n, _)| &**n == "delay"));
-                        let delay = delay.and_then(|(_, e)| nanoseconds(known, e, &[])).unwrap_or(1_000);
-                        leaves.push((News::Topic(*t), delay.max(1_000)));
+                        leaves.push((News::Topic(*t), delay(channel, known)));
                     }
+                    StmtKind::SetParam(p, _) => leaves.push((News::Param(*p), SHORTEST)),
+                    StmtKind::Tell { performative, to, content } => {
+                        let Type::Record(content) = &content.ty else { continue };
+                        let told = News::Told {
+                            from: Some(agent.name.clone()),
+                            to: to.clone(),
+                            performative: performative.clone(),
+                            content: content.clone(),
+                        };
+                        leaves.push((told, SHORTEST));
+                    }
+                    StmtKind::Open(o) => leaves.push(said(g, o.conversation, &o.performative, known)),
+                    StmtKind::Reply(r) => leaves.push(said(g, r.conversation, &r.performative, known)),
                     StmtKind::Command(p, _) => {
                         actuators.extend(agent.actuators.get(*p as usize).map(|p| p.name.clone()));
                     }

@@ -152,15 +152,19 @@ impl Schedule {
                         readings.registers.len() - flight.registers.len()
                     }
                 };
-                let first = readings.images.len() as u32;
-                let takings = flight.images.drain(..);
-                let images = takings.filter_map(|taking| cameraman.as_mut()?.deliver(taking));
-                readings.images.extend(images.map(Arc::new));
-                let is_image = group.sensor.takes_images();
+                let taken: Vec<Option<u32>> = flight
+                    .images
+                    .drain(..)
+                    .map(|taking| {
+                        let image = cameraman.as_mut()?.deliver(taking)?;
+                        readings.images.push(Arc::new(image));
+                        Some(readings.images.len() as u32 - 1)
+                    })
+                    .collect();
                 let reading = |(seat, robot): (usize, &u32)| {
                     let from = (from + seat * width) as u32;
                     let (robot, sensor, to) = (*robot, group.index, from + width as u32);
-                    let image = is_image.then_some(first + seat as u32);
+                    let image = taken.get(seat).copied().flatten();
                     Reading { robot, sensor, captured, delivered, from, to, image }
                 };
                 readings.items.extend(group.robots.iter().enumerate().map(reading));

@@ -105,20 +105,6 @@ impl Differential {
         })
     }
 
-    /// Goes on to `t`.
-    fn advance(&mut self, t: i64) {
-        let wheels = self.wheels(t);
-        let circumference = TAU * self.model.wheel_radius;
-        for (i, (v, d)) in wheels.into_iter().enumerate() {
-            let turned = (d / circumference).floor() != (self.travel[i] / circumference).floor();
-            (self.speed[i], self.travel[i]) = (v, d);
-            if turned && let Some(noise) = &mut self.noise {
-                self.factor[i] = noise.factor(self.model.wheel_error);
-            }
-        }
-        (self.since, self.planned) = (t, None);
-    }
-
     /// New speeds to follow. A turn begins when the wheels are told to differ, or to differ the other way.
     fn aim(&mut self, target: [f64; 2], expires: i64) {
         (self.target, self.expires, self.planned) = (target, expires, None);
@@ -132,6 +118,22 @@ impl Differential {
                 self.turn_factor = noise.factor(self.model.rotation_error);
             }
         }
+    }
+}
+
+impl Drive for Differential {
+    /// Goes on to `t`.
+    fn advance(&mut self, t: i64) {
+        let wheels = self.wheels(t);
+        let circumference = TAU * self.model.wheel_radius;
+        for (i, (v, d)) in wheels.into_iter().enumerate() {
+            let turned = (d / circumference).floor() != (self.travel[i] / circumference).floor();
+            (self.speed[i], self.travel[i]) = (v, d);
+            if turned && let Some(noise) = &mut self.noise {
+                self.factor[i] = noise.factor(self.model.wheel_error);
+            }
+        }
+        (self.since, self.planned) = (t, None);
     }
 
     /// Plans one piece from `t`, the instant of the speeds, on.
@@ -157,16 +159,6 @@ impl Differential {
         let turn = (ground[1] - ground[0]) / self.model.wheel_base * self.turn_factor;
         let velocity = chord(from.heading, ahead, 0.0, turn, dt);
         body.push(Piece::turning(t, end, from, velocity, turn / dt, ahead.abs() / dt), checked);
-    }
-}
-
-impl Drive for Differential {
-    fn extend(&mut self, body: &mut Body, until: i64, checked: i64) {
-        while body.planned() < until {
-            let t = body.planned();
-            self.advance(t);
-            self.plan(body, t, body.place(t), checked);
-        }
     }
 
     /// Only ahead and turn count. A twist that asks too much of a wheel is slowed down along its arc.

@@ -114,6 +114,28 @@ impl Holonomic {
         }
     }
 
+    fn draw(&mut self) {
+        if let Some(noise) = &mut self.noise {
+            self.factor = std::array::from_fn(|_| noise.factor(self.model.error));
+        }
+    }
+
+    /// Up to `now`, for a command.
+    fn command(&mut self, body: &mut Body, now: i64, checked: i64) -> Place {
+        // After a stride a body rests without a plan for it.
+        if !self.walking {
+            self.extend(body, now, checked);
+        }
+        let place = body.place(now);
+        if self.reckoned.origin.is_none() {
+            (self.reckoned.origin, self.reckoned.heading) = (Some(place.heading), place.heading);
+        }
+        self.advance(now);
+        place
+    }
+}
+
+impl Drive for Holonomic {
     fn advance(&mut self, t: i64) {
         let (velocity, way) = match self.reckoned.straight {
             Some(_) if !self.walking => (self.velocity, [0.0; 3]),
@@ -121,12 +143,6 @@ impl Holonomic {
         };
         (self.reckoned.at, self.reckoned.heading) = self.reckon(way, t);
         (self.velocity, self.since) = (velocity, t);
-    }
-
-    fn draw(&mut self) {
-        if let Some(noise) = &mut self.noise {
-            self.factor = std::array::from_fn(|_| noise.factor(self.model.error));
-        }
     }
 
     /// Plans one piece from `t`, the instant of the velocity, on.
@@ -160,30 +176,6 @@ impl Holonomic {
         let velocity = chord(from.heading, ahead, left, turn, dt);
         let speed = norm([ahead, left]) / dt;
         body.push(Piece::turning(t, end, from, velocity, turn / dt, speed), checked);
-    }
-
-    /// Up to `now`, for a command.
-    fn command(&mut self, body: &mut Body, now: i64, checked: i64) -> Place {
-        // After a stride a body rests without a plan for it.
-        if !self.walking {
-            self.extend(body, now, checked);
-        }
-        let place = body.place(now);
-        if self.reckoned.origin.is_none() {
-            (self.reckoned.origin, self.reckoned.heading) = (Some(place.heading), place.heading);
-        }
-        self.advance(now);
-        place
-    }
-}
-
-impl Drive for Holonomic {
-    fn extend(&mut self, body: &mut Body, until: i64, checked: i64) {
-        while body.planned() < until {
-            let t = body.planned();
-            self.advance(t);
-            self.plan(body, t, body.place(t), checked);
-        }
     }
 
     /// Ahead, left and turn count; too fast a twist is slowed down in its direction.

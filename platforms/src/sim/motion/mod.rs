@@ -10,7 +10,7 @@ use lag::Lag;
 
 use super::{
     args::Args,
-    body::{Body, seconds},
+    body::{Body, Place, seconds},
     noise::Stream,
 };
 use std::fmt;
@@ -44,8 +44,18 @@ pub enum Travel {
 /// A drive moves one body. Times are in nanoseconds and never go back; `checked` is the last collision
 /// check, before which a trajectory may be forgotten.
 pub trait Drive: fmt::Debug + Send {
+    /// Goes on to `t`, an instant of the planned piece.
+    fn advance(&mut self, t: i64);
+    /// Plans one piece from `t`, the instant that it has gone on to, where the body is then.
+    fn plan(&mut self, body: &mut Body, t: i64, from: Place, checked: i64);
     /// Plans motion until `until` at least.
-    fn extend(&mut self, body: &mut Body, until: i64, checked: i64);
+    fn extend(&mut self, body: &mut Body, until: i64, checked: i64) {
+        while body.planned() < until {
+            let t = body.planned();
+            self.advance(t);
+            self.plan(body, t, body.place(t), checked);
+        }
+    }
     /// Follows a twist (vx vy vz wx wy wz, base_link) until `expires`, then stops.
     fn twist(&mut self, body: &mut Body, now: i64, twist: [f64; 6], expires: i64, checked: i64);
     /// Walks a stride within `duration`, but stops at `expires`.

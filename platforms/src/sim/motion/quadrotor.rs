@@ -210,6 +210,15 @@ impl Quadrotor {
         }
     }
 
+    /// Up to `now`, for a command.
+    fn command(&mut self, body: &mut Body, now: i64, checked: i64) -> Place {
+        self.extend(body, now, checked);
+        self.advance(now);
+        body.place(now)
+    }
+}
+
+impl Drive for Quadrotor {
     fn advance(&mut self, t: i64) {
         self.state = self.at(t);
         (self.since, self.planned) = (t, None);
@@ -252,23 +261,6 @@ impl Quadrotor {
         let (now, then) = ([s.height, s.roll[0], s.pitch[0]], [next.height, next.roll[0], next.pitch[0]]);
         let rates = std::array::from_fn(|i| (then[i] - now[i]) / dt);
         body.fly(Leg { start: t, end, from: now, rates }, checked);
-    }
-
-    /// Up to `now`, for a command.
-    fn command(&mut self, body: &mut Body, now: i64, checked: i64) -> Place {
-        self.extend(body, now, checked);
-        self.advance(now);
-        body.place(now)
-    }
-}
-
-impl Drive for Quadrotor {
-    fn extend(&mut self, body: &mut Body, until: i64, checked: i64) {
-        while body.planned() < until {
-            let t = body.planned();
-            self.advance(t);
-            self.plan(body, t, body.place(t), checked);
-        }
     }
 
     /// Ahead, left, up and turn count, each limited; too fast a way is slowed down in its direction.
