@@ -200,10 +200,10 @@ impl Body {
         }
     }
 
-    /// Velocity over the ground and turn rate at `t`, in map.
+    /// Velocity over the ground and turn rate at `t`, in map; at the end of a piece still its own, until another follows.
     pub fn motion(&self, t: i64) -> (Vec2, f64) {
         let piece = self.piece(t);
-        if t < piece.end { (piece.velocity, piece.turn) } else { ([0.0; 2], 0.0) }
+        if t <= piece.end { (piece.velocity, piece.turn) } else { ([0.0; 2], 0.0) }
     }
 
     /// The pieces from the one in force at `from` to the one in force at `to`, rests between them included.

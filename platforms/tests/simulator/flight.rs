@@ -81,6 +81,17 @@ fn it_tilts_to_go_somewhere() {
     assert!(tilt(&r)[0] < -0.05, "{:?}", tilt(&r));
 }
 
+/// The gyroscope says how fast it turns at every reading, also at those that fall on the end of a step of the drive.
+#[test]
+fn it_knows_how_fast_it_turns() {
+    let mut r = rig(0.0);
+    r.drive(5.0, 0, 0.0, 0.0, 0.8);
+    for k in 0..20 {
+        r.poll(7.0 + 0.01 * f64::from(k));
+        close(r.latest(0, 0)[4], 0.8, 0.01);
+    }
+}
+
 #[test]
 fn it_needs_time_to_settle_after_a_turn() {
     let mut r = rig(0.0);
