@@ -36,6 +36,8 @@ enum Command {
     Measure(commands::measure::Arguments),
     /// Draw a trace: the top view, the messages, or the schedule
     Plot(commands::plot::Arguments),
+    /// Print what is in a trace, a line for each record
+    Log(commands::log::Arguments),
     /// Execute a trace again and verify that nothing differs
     Replay(commands::replay::Arguments),
     /// Explain a diagnostic code
@@ -94,6 +96,7 @@ pub fn run(arguments: Vec<OsString>) -> Exit {
         Command::Test(a) => (commands::test::run(&a), a.format),
         Command::Measure(a) => (commands::measure::run(&a), Format::Human),
         Command::Plot(a) => (commands::plot::run(&a), Format::Human),
+        Command::Log(a) => (commands::log::run(&a), a.format),
         Command::Replay(a) => (commands::replay::run(&a), a.format),
         Command::Explain(a) => (commands::explain::run(&a), Format::Human),
         Command::Completions(a) => (commands::completions::run(&a), Format::Human),

@@ -5,6 +5,7 @@ pub mod completions;
 pub mod explain;
 pub mod fmt;
 pub mod graph;
+pub mod log;
 pub mod measure;
 pub mod plot;
 pub mod replay;

@@ -132,7 +132,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
 }
 
 /// An instant of a run, from seconds.
-fn instant(text: &str) -> Result<Time, String> {
+pub(super) fn instant(text: &str) -> Result<Time, String> {
     let seconds = text.trim().trim_end_matches('s').trim_end().parse().ok().and_then(Time::from_seconds);
     seconds.filter(|t| *t >= Time::ZERO).ok_or_else(|| "give seconds of virtual time, from 0 on".into())
 }
