@@ -17,6 +17,7 @@ pub trait Loader {
 pub const STANDARD: &[(&str, &str)] = &[
     ("std.prelude", include_str!("../std/prelude.soi")),
     ("std.motion", include_str!("../std/motion.soi")),
+    ("std.vision", include_str!("../std/vision.soi")),
     ("std.protocols", include_str!("../std/protocols.soi")),
 ];
 

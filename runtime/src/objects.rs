@@ -43,7 +43,7 @@ pub fn digest(width: u32, height: u32, data: &[u8]) -> u64 {
     rest.iter().fold(h, |h, b| mix(h, u64::from(*b)))
 }
 
-/// How a camera maps directions to pixels: pinhole with Brown and Conrady's distortion.
+/// How a camera maps directions to pixels, pinhole with Brown and Conrady's distortion, and where it sits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Optics {
     /// Focal lengths in pixels, along x and y.
@@ -52,6 +52,25 @@ pub struct Optics {
     pub centre: [f64; 2],
     /// k1, k2, p1, p2.
     pub distortion: Option<[f64; 4]>,
+    /// Where it is in `base_link`, m.
+    pub at: [f64; 3],
+    /// How far it looks down, rad.
+    pub tilt: f64,
+}
+
+impl Optics {
+    /// How far the camera is ahead of the origin of `base_link`, along a direction that the robot's x axis is `off`
+    /// (rad, to the left) of; m.
+    pub fn ahead(&self, off: f64) -> f64 {
+        let (s, c) = libm::sincos(off);
+        self.at[0] * c - self.at[1] * s
+    }
+
+    /// How far it is to the left of the origin, likewise.
+    pub fn aside(&self, off: f64) -> f64 {
+        let (s, c) = libm::sincos(off);
+        self.at[0] * s + self.at[1] * c
+    }
 }
 
 impl Object for Frame {

@@ -105,6 +105,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "Pose in odom and twist, integrated from wheel pulses; starts at the origin",
     ),
     (
+        "sensor",
+        "gyro_odometry(pulse: Length, period: Duration, latency: Duration = 0 s, turn_noise: Distribution<AngularVelocity> = 0, turn_bias: Distribution<AngularVelocity> = 0) -> Odometry",
+        "The same with the heading of a gyroscope, which sees what wheels that slip do not; the noise is drawn for every reading, the bias once a run",
+    ),
+    (
         "actuator",
         "twist(lifetime: Duration? = none) -> Twist",
         "Velocity of the body. A command lives for two periods of its unit unless a lifetime is given",

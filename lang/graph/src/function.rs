@@ -72,13 +72,14 @@ functions! {
     Low "low<D>(range: Range<D>) -> Quantity<D>" "Lower bound";
     High "high<D>(range: Range<D>) -> Quantity<D>" "Upper bound";
     Brightness "brightness(image: Image) -> Number" "How bright an image is in the mean, 0 to 1";
-    Look "look(image: Image, before: Sight?, imu: Imu, heading: Angle, course: Angle) -> Sight?" "What is seen in an image: upright edges, followed since `before`, paired to obstacles, and points on the nearest one. `heading` is the robot's, from anywhere, and `course` the direction it moves in, from the same";
-    Obstacles "obstacles(sight: Sight) -> List<SeenObstacle, 8>" "The obstacles that are seen, the one that is reached first at the front";
-    ContactByExpansion "contact_by_expansion(sight: Sight) -> Duration?" "Time to contact with the nearest obstacle by the growth of its width (SOIFRA, Eq. 13), over a window of images";
-    ContactByFlow "contact_by_flow(sight: Sight) -> Duration?" "Time to contact with the nearest obstacle by the flow between two images and its focus of expansion (SOIFRA, Eq. 4)";
-    ContactByRobustFlow "contact_by_robust_flow(sight: Sight) -> Duration?" "The same by flow over a longer time, with the robot's own turns taken out; none while it turns fast";
-    Diverging "diverging(sight: Sight) -> Bool?" "Whether the flows of the nearest obstacle's sides do not meet (the published test of a collision course)";
-    CourseAhead "course_ahead(sight: Sight, speed: Velocity, half_width: Length, margin: Length) -> CourseAhead?" "What straight ahead leads to, for a body of that half width with a margin on each side";
+    Look "look(image: Image, before: Sight?, imu: Imu? = none, odometry: Odometry? = none, half_width: Length = 0, margin: Length = 0, low: Number? = none, high: Number? = none, window: Duration = 2.5 s) -> Sight?" "What is seen in an image: upright edges, followed since `before`, paired to obstacles, and points on the first of them: the nearest that a body of that half width with a margin would meet, else the nearest. Without `imu` the camera is level, without `odometry` it goes straight ahead at a constant speed that nobody knows. `low` and `high` are Canny's thresholds, found from the image where they are left out; `window` is how far back edges are remembered";
+    Viewpoint "viewpoint(sight: Sight) -> Viewpoint" "From where an image was taken";
+    Obstacles "obstacles(sight: Sight) -> List<SeenObstacle, 8>" "The obstacles that are seen, those in the way first, each nearest first";
+    ContactByExpansion "contact_by_expansion(sight: Sight) -> Duration?" "Time to contact of the camera with the first obstacle by the growth of its width (SOIFRA, Eq. 13), over a window of images";
+    ContactByFlow "contact_by_flow(sight: Sight) -> Duration?" "Time to contact of the camera with the first obstacle by the flow between two images and its focus of expansion (SOIFRA, Eq. 4)";
+    ContactByRobustFlow "contact_by_robust_flow(sight: Sight, rotating: AngularVelocity = 0.6 rad/s) -> Duration?" "The same by flow over a longer time, with the robot's own turns taken out; none while it turns faster than `rotating`";
+    Diverging "diverging(sight: Sight) -> Bool?" "Whether the flows of the first obstacle's sides do not meet (the published test of a collision course)";
+    CourseAhead "course_ahead(sight: Sight, radius: Length = 0) -> CourseAhead?" "What going straight on leads to, for the body and margin that `look` was told, and how far to turn, on a curve of that radius, for a free way";
     Within "within<D>(x: Quantity<D>, range: Range<D>) -> Bool" "Whether a quantity is in a range";
 }
 
@@ -94,19 +95,9 @@ impl Function {
     }
 
     /// Whether it is computed by a service of the runtime's surroundings, such as a library for images, and not by
-    /// the machine itself.
+    /// the machine itself: whatever takes an opaque value, since only services look into one.
     pub fn is_service(self) -> bool {
-        matches!(
-            self,
-            Function::Brightness
-                | Function::Look
-                | Function::Obstacles
-                | Function::ContactByExpansion
-                | Function::ContactByFlow
-                | Function::ContactByRobustFlow
-                | Function::Diverging
-                | Function::CourseAhead
-        )
+        self.signature().parameters.iter().any(|p| p.pattern.is_opaque())
     }
 
     /// Whether two calls with the same arguments may give different values.

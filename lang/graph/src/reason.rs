@@ -50,6 +50,7 @@ pub const REASONS: &[&str] = &[
     "degenerate geometry",
     "rotating",
     "speed zero",
+    "speed unknown",
     "OpenCV refused",
     "unknown",
 ];

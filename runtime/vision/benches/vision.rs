@@ -142,7 +142,7 @@ fn main() {
     let how = Looking::default();
     let limits: Vec<(f64, f64)> =
         grays.iter().map(|g| thresholds(g, Thresholds::Automatic).expect("thresholds")).collect();
-    let moment = |k: usize| Moment { time: k as f64 * 0.05, ..Moment::default() };
+    let moment = |k: usize| Moment::straight(k as f64 * 0.05);
 
     // What is remembered before each frame, and the points that the flow is asked for.
     let mut memories = vec![Memory::default()];
@@ -220,13 +220,7 @@ fn main() {
     let memory = seen.1;
     criterion.bench_function("vision/flow_robust", |b| {
         b.iter(|| {
-            soifra_vision::robust::history(
-                black_box(&memory.points),
-                moment(last).time,
-                0.0,
-                &Default::default(),
-                &Default::default(),
-            )
+            soifra_vision::robust::history(black_box(&memory.points), &moment(last), &Default::default())
         });
     });
 }

@@ -34,6 +34,23 @@ impl Attitude {
         self.roll.is_finite() && self.pitch.is_finite() && self.yaw.is_finite()
     }
 
+    /// The attitude of a camera that looks down by `tilt` (rad) on a body of this attitude.
+    pub fn looking_down(&self, tilt: f64) -> Self {
+        if tilt == 0.0 {
+            return *self;
+        }
+        // The body's rotation times that of the mount, taken apart again.
+        let m = self.rotation();
+        let (s, c) = libm::sincos(tilt);
+        let x = [0, 1, 2].map(|k| m[k][0] * c - m[k][2] * s);
+        let z = m[2][0] * s + m[2][2] * c;
+        Self {
+            roll: libm::atan2(m[2][1], z),
+            pitch: libm::asin((-x[2]).clamp(-1.0, 1.0)),
+            yaw: libm::atan2(x[1], x[0]),
+        }
+    }
+
     /// The rotation from the body frame to the level frame, row after row.
     pub fn rotation(&self) -> [[f64; 3]; 3] {
         let (sr, cr) = libm::sincos(self.roll);
@@ -62,6 +79,12 @@ impl Rates {
     /// Is every rate a number?
     pub fn is_finite(&self) -> bool {
         self.roll.is_finite() && self.pitch.is_finite() && self.yaw.is_finite()
+    }
+
+    /// The rates about the axes of a camera that looks down by `tilt` (rad).
+    pub fn looking_down(&self, tilt: f64) -> Self {
+        let (s, c) = libm::sincos(tilt);
+        Self { roll: self.roll * c - self.yaw * s, pitch: self.pitch, yaw: self.roll * s + self.yaw * c }
     }
 
     /// The largest of the three, rad/s.

@@ -1,7 +1,8 @@
 //! Is it in the way? The published test, and the one that knows the body's width. Pure geometry.
 
-use crate::expansion::Width;
 use crate::flow::Track;
+use crate::obstacle::Obstacle;
+use crate::sweep::Tangent;
 use crate::why::Why;
 
 /// The published test (SOIFRA, obstacle detection): the flow vectors of the left and the right edge, drawn on as
@@ -55,25 +56,26 @@ pub struct Bearing {
 
 impl Bearing {
     /// From the history of one edge and the inverse time to contact `closing` (1/s) of the thing it belongs to.
-    /// With lateral offset X₀ + Ẋt and distance Z₀(1 − closing·t), the tangent ξ obeys
-    /// ξ(1 − closing·t) = ξ₀ + at, linear in ξ₀ and a; the rate now is a + closing·ξ₀. No focus of expansion is
-    /// needed. `history` holds (time in s, tangent), the last one is now.
+    /// From t seconds of way back and y aside its tangent was ξ = (ξ₀ + at − closing·y)/(1 − closing·t), linear in ξ₀
+    /// and a; the rate now is a + closing·ξ₀. Were the direction of motion known exactly, a would be zero: it is what
+    /// the edge itself tells of it. No focus of expansion is needed. The last sighting is now.
     ///
     /// # Errors
     /// [`Why::TooShort`] for fewer than three samples, [`Why::ZeroInterval`], [`Why::BadNumber`].
-    pub fn fit(history: &[Width], closing: f64) -> Result<Self, Why> {
-        let Some(now) = history.last().map(|s| s.time) else { return Err(Why::TooShort) };
+    pub fn fit(history: &[Tangent], closing: f64) -> Result<Self, Why> {
+        let Some(now) = history.last() else { return Err(Why::TooShort) };
         if history.len() < 3 {
             return Err(Why::TooShort);
         }
-        if !closing.is_finite() || history.iter().any(|s| !s.time.is_finite() || !s.width.is_finite()) {
+        let known = |s: &Tangent| s.time.is_finite() && s.aside.is_finite() && s.tangent.is_finite();
+        if !closing.is_finite() || !history.iter().all(known) {
             return Err(Why::BadNumber);
         }
         let n = history.len() as f64;
         let (mut st, mut stt, mut sy, mut sty) = (0.0, 0.0, 0.0, 0.0);
         for s in history {
-            let t = s.time - now;
-            let y = s.width * (1.0 - closing * t);
+            let t = s.time - now.time;
+            let y = s.tangent * (1.0 - closing * t) + closing * (s.aside - now.aside);
             st += t;
             stt += t * t;
             sy += y;
@@ -124,6 +126,22 @@ impl Reach {
             return Err(Why::NotApproaching);
         }
         Ok(Self { left: a.max(b), right: a.min(b), ttc })
+    }
+}
+
+/// What a body takes up on its way, as lateral offsets from the camera's way, metres, left positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lane {
+    /// Its left side.
+    pub left: f64,
+    /// Its right side.
+    pub right: f64,
+}
+
+impl Lane {
+    /// Whether an obstacle will be in it, approached at `speed`.
+    pub fn holds(&self, obstacle: &Obstacle, speed: f64) -> bool {
+        obstacle.reach(speed).is_ok_and(|r| r.right < self.left && self.right < r.left)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::refine::{Refinement, refine};
 use crate::segment::Segment;
 
 /// What the robot knows about itself when a frame is taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Seconds.
     pub time: f64,
@@ -19,18 +19,50 @@ pub struct Moment {
     pub attitude: Attitude,
     /// The camera's rates of turning.
     pub rates: Rates,
+    /// Where the camera is in the level frame, metres; of a motion whose speed nobody knows, in units of what it
+    /// covers in a second.
+    pub place: [f64; 2],
     /// Azimuth of the direction of motion in the level frame, radians: the yaw, for a robot that drives straight
     /// ahead.
     pub course: f64,
+    /// At which speed way counts as time, m/s: times to contact are what they would be at that speed. That of the motion
+    /// itself, but for a robot that creeps or stands one at which it would not; 1 when nobody knows.
+    pub pace: f64,
+}
+
+/// Where a camera was when something was seen, as seen from where it is now and moves to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Advance {
+    /// Time that the way from there takes at the pace, s, counted back from now: not above zero unless the
+    /// camera went backwards.
+    pub time: f64,
+    /// How far to the left of its present way it was, in units of what the pace covers in a second.
+    pub aside: f64,
 }
 
 impl Moment {
+    /// Straight ahead along `course` at a constant speed that nobody knows, so that places are times.
+    pub fn steady(time: f64, attitude: Attitude, rates: Rates, course: f64) -> Self {
+        let (s, c) = libm::sincos(course);
+        Self { time, attitude, rates, place: [time * c, time * s], course, pace: 1.0 }
+    }
+
+    /// Level, straight ahead, at a constant speed that nobody knows.
+    pub fn straight(time: f64) -> Self {
+        Self::steady(time, Attitude::default(), Rates::default(), 0.0)
+    }
+
     /// Is everything a number?
     pub fn is_finite(&self) -> bool {
-        self.time.is_finite()
-            && self.course.is_finite()
-            && self.attitude.is_finite()
-            && self.rates.is_finite()
+        let numbers = [self.time, self.course, self.pace, self.place[0], self.place[1]];
+        numbers.iter().all(|v| v.is_finite()) && self.attitude.is_finite() && self.rates.is_finite()
+    }
+
+    /// A former place as seen from now. The pace must not be zero.
+    pub fn since(&self, place: [f64; 2]) -> Advance {
+        let (s, c) = libm::sincos(self.course);
+        let (x, y) = (place[0] - self.place[0], place[1] - self.place[1]);
+        Advance { time: (x * c + y * s) / self.pace, aside: (y * c - x * s) / self.pace }
     }
 }
 
@@ -39,8 +71,8 @@ impl Moment {
 pub struct EdgeSight {
     /// Seconds.
     pub time: f64,
-    /// Azimuth of the direction of motion then, radians.
-    pub course: f64,
+    /// Where the camera was then, metres in the level frame.
+    pub place: [f64; 2],
     /// Where it stood in the level frame.
     pub upright: Upright,
 }
@@ -158,7 +190,7 @@ pub fn follow(
 
 fn sight(edge: &Edge, moment: &Moment, lens: &Lens, tilt: f64) -> Option<EdgeSight> {
     let upright = upright(&edge.line, lens, &moment.attitude)?;
-    (upright.tilt.abs() <= tilt).then_some(EdgeSight { time: moment.time, course: moment.course, upright })
+    (upright.tilt.abs() <= tilt).then_some(EdgeSight { time: moment.time, place: moment.place, upright })
 }
 
 /// Where the edge should stand at `time`: its bearing goes on as it went over its last sightings.

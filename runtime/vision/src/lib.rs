@@ -6,11 +6,13 @@
 //! | question | file |
 //! |---|---|
 //! | which near-vertical lines does the image have? | `contours`, `segment`, `refine` |
+//! | which way does the body go, how fast? | `reckoning` |
 //! | where do they stand, which is the published pair? | `edge` |
 //! | how do they move, which of them are obstacles? | `follow`, `sweep`, `obstacle` |
 //! | how do points on the obstacle move? | `points` |
 //! | how long until contact? | `flow`, `robust`, `expansion` |
-//! | is it in the way, on which side is more room? | `course` |
+//! | where does it stand once it is out of sight? | `known` |
+//! | is it in the way, on which side is more room? | `course`, `turning` |
 //! | all of it on a frame | `look` |
 //! | pictures for people | `overlay` |
 //!
@@ -29,16 +31,19 @@ pub mod expansion;
 pub mod flow;
 pub mod follow;
 pub mod image;
+pub mod known;
 pub mod lens;
 pub mod look;
 pub mod obstacle;
 pub mod overlay;
 pub mod points;
+pub mod reckoning;
 pub mod rectify;
 pub mod refine;
 pub mod robust;
 pub mod segment;
 pub mod sweep;
+pub mod turning;
 pub mod why;
 
 pub use image::{Gray, ImageView};

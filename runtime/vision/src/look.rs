@@ -1,9 +1,11 @@
 //! The services put together: a frame and the memory in, what is seen and the next memory out.
 
 use crate::contours::{Contours, verticals};
+use crate::course::Lane;
 use crate::edge::{Edge, nearest_pair};
 use crate::follow::{EdgeTrack, Following, Moment, follow};
 use crate::image::{Gray, ImageView};
+use crate::known::{Known, Remembering, remember};
 use crate::lens::Lens;
 use crate::obstacle::{Obstacle, Pairing, obstacles};
 use crate::points::{self, Flow};
@@ -22,6 +24,10 @@ pub struct Looking {
     pub pairing: Pairing,
     /// Points on the obstacle.
     pub points: points::Following,
+    /// What the body takes up on its way.
+    pub lane: Lane,
+    /// Obstacles out of sight, for motions of a known speed, m/s.
+    pub remembering: Option<(Remembering, f64)>,
 }
 
 /// What is carried from frame to frame: a plain value, the caller's.
@@ -33,8 +39,10 @@ pub struct Memory {
     pub image: Option<Gray>,
     /// Edges followed.
     pub edges: Vec<EdgeTrack>,
-    /// Points followed on the nearest obstacle.
+    /// Points followed on the first obstacle.
     pub points: Vec<PointTrack>,
+    /// Where obstacles stand.
+    pub known: Vec<Known>,
 }
 
 /// What is seen in a frame.
@@ -42,13 +50,13 @@ pub struct Memory {
 pub struct Seen {
     /// All upright edges of this frame, from the left.
     pub edges: Vec<Edge>,
-    /// The obstacles, nearest first, or why there is none.
+    /// The obstacles, or why there is none: those in the lane before the others, each nearest first.
     pub obstacles: Result<Vec<Obstacle>, Why>,
-    /// Flow of points on the nearest obstacle since the last frame.
+    /// Flow of points on the first obstacle since the last frame.
     pub flows: Vec<Flow>,
 }
 
-/// Looks at a frame: edges are followed and paired, points on the nearest obstacle are followed. The next memory
+/// Looks at a frame: edges are followed and paired, points on the first obstacle are followed. The next memory
 /// comes back; after an error go on from the old one with the next frame.
 ///
 /// # Errors
@@ -96,23 +104,29 @@ pub fn look_at(
         Err(why) => return Err(why),
     };
     let edges = follow(memory.edges.clone(), &image, &segments, moment, lens, &how.edges);
-    let found = obstacles(&edges, moment.course, lens, &how.pairing);
+    let mut found = obstacles(&edges, moment, lens, &how.pairing);
+    if let Ok(list) = &mut found {
+        list.sort_by_key(|o| !how.lane.holds(o, moment.pace));
+    }
     let mut followed = match &memory.image {
         Some(previous) => {
             points::advance(memory.points.clone(), previous, &image, moment, lens, &how.points)?
         }
         None => Vec::new(),
     };
-    if let Some(nearest) = found.as_ref().ok().and_then(|list| list.first()) {
-        followed =
-            points::replenish(followed, &image, &nearest.left, &nearest.right, moment, lens, &how.points);
+    if let Some(first) = found.as_ref().ok().and_then(|list| list.first()) {
+        followed = points::replenish(followed, &image, &first.left, &first.right, moment, lens, &how.points);
     }
     let seen = Seen {
         edges: edges.iter().filter(|t| t.missed == 0).map(|t| t.edge).collect(),
         obstacles: found,
         flows: points::flows(&followed),
     };
-    let memory = Memory { time: Some(moment.time), image: Some(image), edges, points: followed };
+    let obstacles = seen.obstacles.as_deref().unwrap_or_default();
+    let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
+        remember(&memory.known, obstacles, moment, *speed, (lens, image.width()), remembering)
+    });
+    let memory = Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known };
     Ok((seen, memory))
 }
 

@@ -5,11 +5,12 @@
 //! with nothing farther away seen between them and nothing of the same rate right outside of them. Marks on walls,
 //! floor tiles and the pattern on the obstacle's own face all fail one of these.
 
+use crate::course::{Bearing, Reach};
 use crate::edge::Edge;
 use crate::expansion::{Expansion, Width, Window, window};
-use crate::follow::EdgeTrack;
+use crate::follow::{EdgeTrack, Moment};
 use crate::lens::Lens;
-use crate::sweep::{Sweep, settled, sweep, tangents, widths};
+use crate::sweep::{Sweep, Tangent, settled, sweep, tangents, widths};
 use crate::why::Why;
 
 /// Parameters.
@@ -21,8 +22,6 @@ pub struct Pairing {
     pub shortest: f64,
     /// The window of the expansion.
     pub window: Window,
-    /// Largest change of the direction of motion within it, radians.
-    pub bend: f64,
     /// Uncertainty of the direction of motion, radians.
     pub drift: f64,
     /// Relative difference of closing rates that counts as another distance.
@@ -47,7 +46,6 @@ impl Default for Pairing {
             fewest: 6,
             shortest: 0.3,
             window: Window::default(),
-            bend: 0.05,
             drift: 0.006,
             difference: 0.12,
             ahead: 0.04,
@@ -59,6 +57,9 @@ impl Default for Pairing {
         }
     }
 }
+
+/// How much the edges of one thing differ in distance, as a share.
+const DEPTH: f64 = 0.15;
 
 /// What is seen right outside of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -83,21 +84,51 @@ pub struct Obstacle {
     /// Width at the optical row, pixels.
     pub width: f64,
     /// Tangents of the left edge's bearing off the course over time (left positive).
-    pub left_tangents: Vec<Width>,
+    pub left_tangents: Vec<Tangent>,
     /// Those of the right edge.
-    pub right_tangents: Vec<Width>,
+    pub right_tangents: Vec<Tangent>,
     /// The history of the width: difference of the tangents, free of roll, pitch and turning.
     pub widths: Vec<Width>,
     /// Time to contact by expansion over that history.
     pub contact: Expansion,
+    /// How fast each edge closes in by its own bearing, left and right.
+    pub sweeps: [Sweep; 2],
     /// What is seen beyond the left edge, and beyond the right.
     pub beyond: [Beyond; 2],
+}
+
+impl Obstacle {
+    /// Time to contact with each edge, s, left and right: what the edge's own bearing says of it and what the width says
+    /// of both, weighted by their uncertainty. Edges of one thing need not be equally far: the width is trusted to
+    /// `DEPTH` of the closing rate, bearings to a course known to `drift` radians.
+    pub fn edge_contacts(&self, drift: f64) -> [f64; 2] {
+        let both = 1.0 / self.contact.ttc;
+        let of_both = libm::hypot(DEPTH * both, both * self.contact.sigma / self.contact.ttc);
+        self.sweeps.map(|own| {
+            let of_own = libm::hypot(own.sigma, drift * own.bias()).max(1e-9);
+            let (a, b) = (1.0 / (of_both * of_both), 1.0 / (of_own * of_own));
+            let closing = (both * a + own.closing * b) / (a + b);
+            // Never farther than twice, or nearer than half of what the width says.
+            1.0 / closing.clamp(0.5 * both, 2.0 * both)
+        })
+    }
+
+    /// What it will occupy when it is reached at `speed` (m/s).
+    ///
+    /// # Errors
+    /// Those of [`Bearing::fit`] and [`Reach::predict`].
+    pub fn reach(&self, speed: f64) -> Result<Reach, Why> {
+        let closing = 1.0 / self.contact.ttc;
+        let left = Bearing::fit(&self.left_tangents, closing)?;
+        let right = Bearing::fit(&self.right_tangents, closing)?;
+        Reach::predict(&left, &right, self.contact.ttc, speed)
+    }
 }
 
 /// An edge that takes part.
 struct Candidate<'a> {
     track: &'a EdgeTrack,
-    tangents: Vec<Width>,
+    tangents: Vec<Tangent>,
     sweep: Sweep,
 }
 
@@ -114,20 +145,23 @@ struct Pair {
     beyond: [Beyond; 2],
 }
 
-/// The obstacles among the edges, nearest first, none overlapping a nearer one. `course` is the azimuth of the
-/// motion in the level frame, radians.
+/// The obstacles among the edges as seen from `now`, nearest first, none overlapping a nearer one.
 ///
 /// # Errors
 /// [`Why::NoFeatures`] without edges; [`Why::OneEdge`] for a single one; [`Why::TooShort`] while none was seen long
-/// enough; [`Why::NoObstacle`] when no two belong together; [`Why::BadNumber`].
+/// enough; [`Why::NoObstacle`] when no two belong together; [`Why::SpeedZero`] for a pace that is not positive;
+/// [`Why::BadNumber`].
 pub fn obstacles(
     tracks: &[EdgeTrack],
-    course: f64,
+    now: &Moment,
     lens: &Lens,
     how: &Pairing,
 ) -> Result<Vec<Obstacle>, Why> {
-    if !course.is_finite() {
+    if !now.is_finite() {
         return Err(Why::BadNumber);
+    }
+    if now.pace <= 0.0 {
+        return Err(Why::SpeedZero);
     }
     match tracks.iter().filter(|t| t.missed == 0).count() {
         0 => return Err(Why::NoFeatures),
@@ -139,7 +173,7 @@ pub fn obstacles(
         .iter()
         .filter(|t| t.missed == 0)
         .filter_map(|track| {
-            let tangents = tangents(track, course, how.bend, how.window.length);
+            let tangents = tangents(track, now, how.window.length);
             let tangents = settled(&tangents, how.fewest, how.shortest, 5.0 * noise).to_vec();
             let long = tangents.last()?.time - tangents.first()?.time >= how.shortest;
             let sweep = sweep(&tangents, how.fewest, noise).filter(|s| long && stands(track, s, how))?;
@@ -286,6 +320,7 @@ fn obstacle(candidates: &[Candidate<'_>], pair: Pair, lens: &Lens) -> Obstacle {
         right_tangents: r.tangents.clone(),
         widths: pair.widths,
         contact: pair.contact,
+        sweeps: [l.sweep, r.sweep],
         beyond: pair.beyond,
     }
 }

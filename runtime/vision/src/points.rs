@@ -227,7 +227,7 @@ pub fn advance(
             point.pixel = at;
             point.quality = quality;
             point.sights.retain(|s| s.time < moment.time && moment.time - s.time <= how.memory);
-            point.sights.push(Sight { time: moment.time, ray, course: moment.course });
+            point.sights.push(Sight { time: moment.time, ray, place: moment.place });
             Some(point)
         })
         .collect())
@@ -269,7 +269,7 @@ pub fn replenish(
             pixel: new.at,
             way: [0.0, 0.0],
             quality: 0.0,
-            sights: vec![Sight { time: moment.time, ray, course: moment.course }],
+            sights: vec![Sight { time: moment.time, ray, place: moment.place }],
         });
     }
     points

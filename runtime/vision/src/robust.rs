@@ -2,12 +2,14 @@
 //! all of them.
 //!
 //! Points of one obstacle are at one distance, so that between two frames they scale about the focus:
-//! now − then = (now − focus)·eT/(1 + eT), e the inverse time to contact now, T the baseline. Scale and focus are
+//! now − then = (now − focus)·eT/(1 + eT), e the inverse time to contact now, T the baseline, both places as seen
+//! along the straight line between where the camera was (see [`crate::follow::Advance`]). Scale and focus are
 //! solved together: a turn that the gyro does not see shifts the focus, not the scale. No random sampling: the
 //! start is the median over all pairs of points in a fixed order, then iteratively reweighted least squares.
 
 use crate::attitude::{Attitude, Rates};
 use crate::flow::{FlowContact, Track};
+use crate::follow::Moment;
 use crate::lens::Lens;
 use crate::refine::{median, tukey};
 use crate::why::{Why, interval};
@@ -30,8 +32,8 @@ pub struct Sight {
     pub time: f64,
     /// The direction in the level frame (any length).
     pub ray: [f64; 3],
-    /// Azimuth of the direction of motion in the level frame then, radians.
-    pub course: f64,
+    /// Where the camera was then, metres in the level frame.
+    pub place: [f64; 2],
 }
 
 /// A point followed over frames, oldest sighting first.
@@ -58,7 +60,7 @@ pub struct Robust {
     pub fewest: usize,
     /// Above this rate of turning (any axis, rad/s) there is no answer.
     pub rotating: f64,
-    /// Largest change of the direction of motion within the baseline, radians.
+    /// Largest angle between the present way and the straight line from where a point was first seen, as a tangent.
     pub bend: f64,
     /// Smallest expansion over the baseline, as a share.
     pub growth: f64,
@@ -68,7 +70,7 @@ pub struct Robust {
 
 impl Default for Robust {
     fn default() -> Self {
-        Self { baseline: 1.5, fewest: 4, rotating: 0.6, bend: 0.05, growth: 0.004, uncertainty: 0.5 }
+        Self { baseline: 1.5, fewest: 4, rotating: 0.6, bend: 0.5, growth: 0.004, uncertainty: 0.5 }
     }
 }
 
@@ -101,39 +103,38 @@ impl Pair {
     }
 }
 
-/// From the history of points. `time` (s), `course` (azimuth of the motion in the level frame, radians) and `rates`
-/// are those of the last frame; points not seen in it are left out. Points on edges count across the edge only
-/// (along it they say nothing).
+/// From the history of points as seen from `now`, the moment of the last frame; points not seen in it are left out.
+/// Points on edges count across the edge only (along it they say nothing).
 ///
 /// # Errors
 /// [`Why::Rotating`], [`Why::NoFeatures`], [`Why::TooShort`], [`Why::NoMotion`], [`Why::NotApproaching`],
-/// [`Why::Degenerate`], [`Why::BadNumber`].
-pub fn history(
-    points: &[PointTrack],
-    time: f64,
-    course: f64,
-    rates: &Rates,
-    how: &Robust,
-) -> Result<RobustContact, Why> {
-    if !(time.is_finite() && course.is_finite() && rates.is_finite()) {
+/// [`Why::Degenerate`], [`Why::SpeedZero`], [`Why::BadNumber`].
+pub fn history(points: &[PointTrack], now: &Moment, how: &Robust) -> Result<RobustContact, Why> {
+    if !now.is_finite() {
         return Err(Why::BadNumber);
     }
-    if rates.largest() > how.rotating {
+    if now.pace <= 0.0 {
+        return Err(Why::SpeedZero);
+    }
+    if now.rates.largest() > how.rotating {
         return Err(Why::Rotating);
     }
     let mut seen = 0usize;
     let mut pairs = Vec::with_capacity(points.len());
     for p in points {
-        let Some(last) = p.sights.last().filter(|s| s.time == time) else { continue };
+        let Some(last) = p.sights.last().filter(|s| s.time == now.time) else { continue };
         seen += 1;
-        let bent = |s: &Sight| libm::fabs(crate::attitude::wrap(s.course - course)) > how.bend;
-        let from = p.sights.iter().rposition(bent).map_or(0, |k| k + 1);
-        let Some(first) = p.sights[from..].iter().find(|s| time - s.time <= how.baseline) else { continue };
-        let baseline = time - first.time;
-        if let (true, Some(now), Some(then)) =
-            (baseline > 0.0, along(last.ray, course), along(first.ray, course))
+        let backs = p.sights.iter().map(|s| (s, now.since(s.place)));
+        let mut fit = backs.filter(|(_, b)| -b.time <= how.baseline && b.time < 0.0);
+        let Some((first, back)) = fit.find(|(_, b)| b.aside.abs() <= how.bend * -b.time) else { continue };
+        let baseline = -back.time;
+        if let (Some(mut here), Some(mut there)) = (along(last.ray, now.course), along(first.ray, now.course))
         {
-            pairs.push(Pair { now, then, baseline, both: p.part == Part::Interior });
+            // Both as seen along the straight line between the two places.
+            for place in [&mut here, &mut there] {
+                place[0] += back.aside / baseline;
+            }
+            pairs.push(Pair { now: here, then: there, baseline, both: p.part == Part::Interior });
         }
     }
     if seen < how.fewest.max(2) {

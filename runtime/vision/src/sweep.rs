@@ -1,13 +1,14 @@
 //! How fast each edge closes in, from its bearing alone.
 //!
 //! A vertical edge at lateral offset X and distance Z is seen at the tangent q = X/Z off the direction of motion;
-//! with Z shrinking evenly q(t)·(1 − e·t) = q(0), e the inverse time to contact now. Edges of one face share e; a
-//! nearer thing has a greater e than what is behind it. This is what tells an obstacle's outline from the texture
-//! of a wall or a floor.
+//! from a former place, t seconds of way back and y aside of the present way (see [`crate::follow::Advance`]), it was
+//! seen at q(t, y)·(1 − e·t) = q(0) − e·y, e the inverse time to contact now. So speed and direction may have changed
+//! on the way. Edges of one face share e; a nearer thing has a greater e than what is behind it. This is what tells an
+//! obstacle's outline from the texture of a wall or a floor.
 
 use crate::attitude::wrap;
 use crate::expansion::Width;
-use crate::follow::EdgeTrack;
+use crate::follow::{EdgeTrack, Moment};
 
 /// An edge's closing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,38 +29,55 @@ impl Sweep {
     }
 }
 
-/// Bearings of one edge as tangents off `course`, for the sightings since the motion last bent by more than `bend`
-/// radians and within `length` seconds of the last.
-pub fn tangents(track: &EdgeTrack, course: f64, bend: f64, length: f64) -> Vec<Width> {
-    let from = track.sights.iter().rposition(|s| wrap(s.course - course).abs() > bend).map_or(0, |k| k + 1);
-    let last = track.sights.last().map_or(0.0, |s| s.time);
-    track.sights[from..]
-        .iter()
-        .filter(|s| last - s.time <= length)
-        .filter_map(|s| {
-            let off = wrap(s.upright.bearing - course);
-            (off.abs() < 1.4).then(|| Width { time: s.time, width: libm::tan(off) })
-        })
-        .collect()
+/// A sighting of an edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tangent {
+    /// Way back in time at the pace, s; see [`crate::follow::Advance`].
+    pub time: f64,
+    /// How far aside of the present way it was seen from, in what the pace covers in a second.
+    pub aside: f64,
+    /// Tangent of the bearing off the present direction of motion, left positive.
+    pub tangent: f64,
+}
+
+/// Sightings nearer together than this are one, s of way: a robot that stands sees the same again and again.
+const STEP: f64 = 0.004;
+
+/// Sightings of one edge within `length` seconds of way, as seen from `now`: oldest first.
+pub fn tangents(track: &EdgeTrack, now: &Moment, length: f64) -> Vec<Tangent> {
+    let mut out: Vec<Tangent> = Vec::with_capacity(track.sights.len());
+    for s in track.sights.iter().rev() {
+        let back = now.since(s.place);
+        let off = wrap(s.upright.bearing - now.course);
+        if out.last().is_some_and(|t| back.time > t.time - STEP) || off.abs() >= 1.4 {
+            continue;
+        }
+        if back.time < -length {
+            break;
+        }
+        out.push(Tangent { time: back.time, aside: back.aside, tangent: libm::tan(off) });
+    }
+    out.reverse();
+    out
 }
 
 /// The closing of one edge from its tangents; `noise` is the smallest noise of a tangent. `None` for fewer than
 /// `fewest` sightings.
-pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
-    let now = tangents.last()?.time;
+pub fn sweep(tangents: &[Tangent], fewest: usize, noise: f64) -> Option<Sweep> {
+    let now = tangents.last()?;
     if tangents.len() < fewest.max(3) {
         return None;
     }
-    // q = q0 + e·(t·q): a straight line over the abscissa t·q.
+    // q = q0 + e·(t·q − y): a straight line over the abscissa t·q − y.
     let n = tangents.len() as f64;
-    let abscissa = |s: &Width| (s.time - now) * s.width;
+    let abscissa = |s: &Tangent| (s.time - now.time) * s.tangent - (s.aside - now.aside);
     let mx = tangents.iter().map(abscissa).sum::<f64>() / n;
-    let my = tangents.iter().map(|s| s.width).sum::<f64>() / n;
+    let my = tangents.iter().map(|s| s.tangent).sum::<f64>() / n;
     let (mut xx, mut xy) = (0.0, 0.0);
     for s in tangents {
         let x = abscissa(s) - mx;
         xx += x * x;
-        xy += x * (s.width - my);
+        xy += x * (s.tangent - my);
     }
     if !(xx > 1e-18) {
         return None;
@@ -69,7 +87,7 @@ pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
     let squares: f64 = tangents
         .iter()
         .map(|s| {
-            let r = s.width - tangent - closing * abscissa(s);
+            let r = s.tangent - tangent - closing * abscissa(s);
             r * r
         })
         .sum();
@@ -83,10 +101,10 @@ pub fn sweep(tangents: &[Width], fewest: usize, noise: f64) -> Option<Sweep> {
 }
 
 /// The latest part of a history that one closing explains. A track may have changed over to another edge that it
-/// met, and the robot may have sped up: where an early and a late part of the history disagree beyond their noise
+/// met: where an early and a late part of the history disagree beyond their noise
 /// only the later one counts, cut where they disagree most; and so on with that. What is left spans at least `shortest`
 /// seconds. `noise` is the error of a tangent that may last (the background moving past the edge pulls at it).
-pub fn settled(tangents: &[Width], fewest: usize, shortest: f64, noise: f64) -> &[Width] {
+pub fn settled(tangents: &[Tangent], fewest: usize, shortest: f64, noise: f64) -> &[Tangent] {
     let fewest = fewest.max(5);
     let mut rest = tangents;
     while rest.len() >= 2 * fewest {
@@ -104,7 +122,7 @@ pub fn settled(tangents: &[Width], fewest: usize, shortest: f64, noise: f64) -> 
 }
 
 /// By how much two parts of a history disagree, in units of what their noise allows.
-fn disagreement(early: &[Width], late: &[Width], fewest: usize, noise: f64) -> f64 {
+fn disagreement(early: &[Tangent], late: &[Tangent], fewest: usize, noise: f64) -> f64 {
     let (Some(before), Some(now)) = (sweep(early, fewest, noise), sweep(late, fewest, noise)) else {
         return 0.0;
     };
@@ -119,7 +137,7 @@ fn disagreement(early: &[Width], late: &[Width], fewest: usize, noise: f64) -> f
 }
 
 /// The width between two edges at the times both were seen: difference of the tangents, left minus right.
-pub fn widths(left: &[Width], right: &[Width]) -> Vec<Width> {
+pub fn widths(left: &[Tangent], right: &[Tangent]) -> Vec<Width> {
     let mut widths = Vec::with_capacity(left.len().min(right.len()));
     let mut k = 0;
     for l in left {
@@ -127,7 +145,7 @@ pub fn widths(left: &[Width], right: &[Width]) -> Vec<Width> {
             k += 1;
         }
         if k < right.len() && right[k].time == l.time {
-            widths.push(Width { time: l.time, width: l.width - right[k].width });
+            widths.push(Width { time: l.time, width: l.tangent - right[k].tangent });
         }
     }
     widths

@@ -43,6 +43,8 @@ pub enum Why {
     Rotating,
     /// The robot stands: there is no time to contact.
     SpeedZero,
+    /// Nobody has told how fast the robot is.
+    SpeedUnknown,
     /// OpenCV refused.
     OpenCv,
 }
@@ -70,6 +72,7 @@ impl Why {
             Why::Degenerate => "degenerate geometry",
             Why::Rotating => "rotating",
             Why::SpeedZero => "speed zero",
+            Why::SpeedUnknown => "speed unknown",
             Why::OpenCv => "OpenCV refused",
         }
     }

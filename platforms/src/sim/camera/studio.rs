@@ -43,6 +43,8 @@ pub struct Mounted {
     pub(super) lens: Lens,
     /// In base_link.
     pub(super) mount: Pose,
+    /// How far down it looks, rad.
+    tilt: f64,
     /// Standard deviation, of 255.
     pub(super) noise: f64,
     pub(super) gain: f64,
@@ -198,8 +200,10 @@ impl Mounted {
         let lens =
             Lens::from_distorted_field_of_view(width, height, args.positive("field_of_view")?, distortion)
                 .map_err(|_| args.wrong("there is no such lens"))?;
-        let rotation = Rotation::from_roll_pitch_yaw(0.0, args.number("tilt")?, 0.0);
+        let tilt = args.number("tilt")?;
+        let rotation = Rotation::from_roll_pitch_yaw(0.0, tilt, 0.0);
         Ok(Mounted {
+            tilt,
             lens,
             mount: Pose { position: args.vector("at")?, rotation },
             noise: 255.0 * args.at_least_zero("noise")?,
@@ -211,7 +215,13 @@ impl Mounted {
     /// For whoever measures in its images.
     pub fn optics(&self) -> Optics {
         let l = &self.lens;
-        Optics { focal: [l.fx, l.fy], centre: [l.cx, l.cy], distortion: l.distortion }
+        Optics {
+            focal: [l.fx, l.fy],
+            centre: [l.cx, l.cy],
+            distortion: l.distortion,
+            at: self.mount.position,
+            tilt: self.tilt,
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::sim::{
 };
 use soifra_graph::Distribution;
 
-/// Registers: pose in `odom` (x y z qx qy qz qw), then twist. Starts at the origin. Between two captures the
+/// Registers: pose in `odom` (x y z qx qy qz qw), twist, the time. Starts at the origin. Between two captures the
 /// speed is what the body covered, along its mean heading, with errors.
 #[derive(Debug)]
 pub struct FlowOdometry {
@@ -69,5 +69,6 @@ impl Sensor for FlowOdometry {
         let per = 1.0 / self.period;
         out.extend_from_slice(&[r.at[0], r.at[1], 0.0, 0.0, 0.0, s, c]);
         out.extend_from_slice(&[way[0] * per, way[1] * per, 0.0, 0.0, 0.0, turn * per]);
+        out.push(view.at.seconds());
     }
 }

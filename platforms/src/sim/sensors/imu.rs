@@ -4,7 +4,7 @@ use super::{Mount, Sensor, View, draw};
 use crate::sim::noise::{self, Stream};
 use soifra_graph::Distribution;
 
-/// Registers: roll, pitch, then the rates about x, y and z of base_link.
+/// Registers: roll, pitch, the rates about x, y and z of base_link, the time.
 #[derive(Debug)]
 pub struct Imu {
     rate_noise: Distribution,
@@ -41,5 +41,6 @@ impl Sensor for Imu {
         for (rate, bias) in rates.into_iter().zip(self.biases[seat]) {
             out.push(rate + bias + draw(&mut self.streams, seat, self.rate_noise));
         }
+        out.push(view.at.seconds());
     }
 }

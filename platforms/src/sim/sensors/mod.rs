@@ -139,6 +139,7 @@ pub fn build(mount: Mount<'_>) -> Result<Box<dyn Sensor>, String> {
         "imu" => Box::new(imu::Imu::new(mount)?),
         "flow_odometry" => Box::new(flow_odometry::FlowOdometry::new(mount)?),
         "odometry" => Box::new(odometry::Odometry::new(mount)?),
+        "gyro_odometry" => Box::new(odometry::Odometry::with_gyroscope(mount)?),
         _ => return Err(mount.args.wrong("the simulator has no such sensor")),
     })
 }

@@ -76,7 +76,8 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
             pitch: attitude.pitch + jitter * noise.next(),
             yaw: attitude.yaw + jitter * noise.next(),
         };
-        let moment = Moment { time, attitude, rates, course: 0.0 };
+        let moment =
+            Moment { pace: scene.speed, place: [x, 0.0], ..Moment::steady(time, attitude, rates, 0.0) };
         let (seen, next) = look(&view, &memory, &moment, &lens, &how).unwrap();
         memory = next;
         let bin = BINS.iter().position(|b| b.0 <= away && away < b.1);
@@ -86,12 +87,13 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
         if let Some(bin) = bin {
             errors.frames[bin] += 1;
         }
-        let flow = history(&memory.points, time, 0.0, &rates, &Robust::default());
+        let flow = history(&memory.points, &moment, &Robust::default());
         let mut line = String::new();
         if let Ok(found) = seen.obstacles.as_ref().map(|o| &o[0]) {
             let off = found.contact.ttc * scene.speed - away;
             let truth = [(scene.offset + half) / away, (scene.offset - half) / away];
-            let got = [found.left_tangents.last().unwrap().width, found.right_tangents.last().unwrap().width];
+            let got =
+                [found.left_tangents.last().unwrap().tangent, found.right_tangents.last().unwrap().tangent];
             let wrong = (0..2).any(|k| (truth[k] - got[k]).abs() * lens.fx > 3.0);
             line = format!(
                 "exp {off:+.3} ±{:.3} px [{:+.2} {:+.2}] {:?}",
@@ -134,7 +136,7 @@ pub fn run(scene: &Approach, seed: u64) -> Errors {
                 for t in memory.edges.iter().filter(|t| t.missed == 0) {
                     use soifra_vision::sweep::{sweep, tangents};
                     let u = t.sights.last().unwrap().upright;
-                    let s = sweep(&tangents(t, 0.0, 0.05, 2.5), 6, 0.03 / lens.fx);
+                    let s = sweep(&tangents(t, &moment, 2.5), 6, 0.03 / lens.fx);
                     if (u.bearing.tan() - scene.offset / away).abs() < 0.7 / away {
                         println!(
                             "   id {} n {} x {:.2} at {:.3} m up {:.2} low {:.2} {:?} support {:.2} strength {:.0}",

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use soifra_vision::attitude::{Attitude, Rates};
 use soifra_vision::expansion::{self, Width, Window};
 use soifra_vision::flow::{self, Track};
+use soifra_vision::follow::Moment;
 use soifra_vision::robust::{self, Part, PointTrack, Robust, Sight, sight_ray};
 use soifra_vision::{Lens, Why};
 
@@ -59,11 +60,13 @@ fn expansion_on_exact_widths() {
     near(expansion::window(&metres, &Window::default()).unwrap().ttc, z, 0.01);
 }
 
+const SPEED: f64 = 0.5;
+
 /// A history of points seen from a camera that moves ahead and turns evenly; the gyro's yaw drifts.
 fn turning(rates: Rates, drift: f64, noise: f64) -> (Vec<PointTrack>, f64) {
     let points = face(2);
     let mut draws = Gauss::new(5);
-    let (speed, z, dt) = (0.5, 3.0, 0.05);
+    let (speed, z, dt) = (SPEED, 3.0, 0.05);
     let mut found: Vec<PointTrack> = points
         .iter()
         .map(|_| PointTrack {
@@ -81,10 +84,15 @@ fn turning(rates: Rates, drift: f64, noise: f64) -> (Vec<PointTrack>, f64) {
         for (track, pixel) in found.iter_mut().zip(project(&points, z - speed * t, &attitude)) {
             track.pixel = [pixel[0] + noise * draws.next(), pixel[1] + noise * draws.next()];
             let ray = sight_ray(&lens(), &believed, track.pixel).unwrap();
-            track.sights.push(Sight { time: t, ray, course: 0.0 });
+            track.sights.push(Sight { time: t, ray, place: [speed * t, 0.0] });
         }
     }
     (found, z / speed)
+}
+
+/// At the end of [`turning`].
+fn now(rates: Rates) -> Moment {
+    Moment { pace: SPEED, ..Moment::steady(0.0, Attitude::default(), rates, 0.0) }
 }
 
 #[test]
@@ -92,7 +100,7 @@ fn robust_flow_with_and_without_turning() {
     let how = Robust::default();
     let still = Rates::default();
     let (points, truth) = turning(still, 0.0, 0.0);
-    near(robust::history(&points, 0.0, 0.0, &still, &how).unwrap().ttc, truth, 1e-4);
+    near(robust::history(&points, &now(still), &how).unwrap().ttc, truth, 1e-4);
     let rate = 30f64.to_radians();
     for rates in [
         Rates { yaw: 0.3, ..still },
@@ -102,7 +110,7 @@ fn robust_flow_with_and_without_turning() {
     ] {
         // A second of 30°/s about z would carry the face out of the picture: the body turns there for less.
         let (points, truth) = turning(rates, 0.01, 0.1);
-        near(robust::history(&points, 0.0, 0.0, &rates, &how).unwrap().ttc, truth, 0.05);
+        near(robust::history(&points, &now(rates), &how).unwrap().ttc, truth, 0.05);
     }
     // Two frames, at the full 30°/s about each axis.
     for rates in
@@ -120,7 +128,7 @@ fn robust_flow_with_and_without_turning() {
         near(found.ttc, z / speed, 0.05);
     }
     let fast = Rates { yaw: 1.0, ..still };
-    assert_eq!(robust::history(&points, 0.0, 0.0, &fast, &how), Err(Why::Rotating));
+    assert_eq!(robust::history(&points, &now(fast), &how), Err(Why::Rotating));
 }
 
 #[test]
@@ -130,7 +138,7 @@ fn a_fifth_of_wild_points_does_no_harm() {
         p.sights[0].ray[1] += 0.05;
         p.sights[0].ray[2] -= 0.08;
     }
-    near(robust::history(&points, 0.0, 0.0, &Rates::default(), &Robust::default()).unwrap().ttc, truth, 0.02);
+    near(robust::history(&points, &now(Rates::default()), &Robust::default()).unwrap().ttc, truth, 0.02);
 }
 
 #[test]
@@ -148,7 +156,7 @@ fn refusals_are_typed() {
     assert_eq!(flow::focus(&[t(0.0, 0.0), t(0.0, 0.0)]), Err(Why::NoMotion));
     assert_eq!(flow::focus(&[t(1.0, 0.0), t(2.0, 0.0)]), Err(Why::Degenerate));
     assert_eq!(flow::published(&[t(1.0, 0.0), t(0.0, 2.0)], 0.0), Err(Why::ZeroInterval));
-    let none = robust::history(&[], 0.0, 0.0, &Rates::default(), &Robust::default());
+    let none = robust::history(&[], &now(Rates::default()), &Robust::default());
     assert_eq!(none, Err(Why::NoFeatures));
 }
 

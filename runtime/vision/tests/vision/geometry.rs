@@ -7,6 +7,7 @@ use soifra_vision::edge::{Edge, Side, Upright, nearest_pair, seen, side, upright
 use soifra_vision::expansion::{Width, Window, window};
 use soifra_vision::flow::Track;
 use soifra_vision::segment::{Merging, Segment, merge};
+use soifra_vision::sweep::Tangent;
 use soifra_vision::{Lens, Why};
 
 use crate::scene::Gauss;
@@ -63,13 +64,14 @@ fn watched(left: f64, right: f64, z: f64, speed: f64, draws: &mut Gauss) -> Resu
     for k in -30..=0 {
         let t = f64::from(k) * 0.05;
         for (h, y) in history.iter_mut().zip([left, right]) {
-            h.push(Width { time: t, width: y / (z - speed * t) + drift * t + noise * draws.next() });
+            let tangent = y / (z - speed * t) + drift * t + noise * draws.next();
+            h.push(Tangent { time: t, aside: 0.0, tangent });
         }
     }
     let widths: Vec<Width> = history[0]
         .iter()
         .zip(&history[1])
-        .map(|(a, b)| Width { time: a.time, width: a.width - b.width })
+        .map(|(a, b)| Width { time: a.time, width: a.tangent - b.tangent })
         .collect();
     let ttc = window(&widths, &Window::default())?.ttc;
     Reach::predict(&Bearing::fit(&history[0], 1.0 / ttc)?, &Bearing::fit(&history[1], 1.0 / ttc)?, ttc, speed)

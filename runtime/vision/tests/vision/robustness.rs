@@ -33,23 +33,21 @@ fn dark_bright_and_empty_frames() {
     for (level, wanted) in [(0u8, Err(Why::Black)), (255, Err(Why::White)), (128, Ok(Err(Why::NoFeatures)))] {
         let data = [level; 64 * 48 * 3];
         let view = ImageView::new(64, 48, 3, &data).unwrap();
-        let found = look(&view, &Memory::default(), &Moment::default(), &lens, &how);
+        let found = look(&view, &Memory::default(), &Moment::straight(0.0), &lens, &how);
         assert_eq!(found.map(|f| f.0.obstacles.map(|_| ())), wanted);
     }
     let data = [128u8; 64 * 48];
     let view = ImageView::new(64, 48, 1, &data).unwrap();
-    let memory = look(&view, &Memory::default(), &Moment::default(), &lens, &how).unwrap().1;
-    let again = |time: f64| {
-        look(&view, &memory, &Moment { time, ..Moment::default() }, &lens, &how).map(|_| ()).err()
-    };
+    let memory = look(&view, &Memory::default(), &Moment::straight(0.0), &lens, &how).unwrap().1;
+    let again = |time: f64| look(&view, &memory, &Moment::straight(time), &lens, &how).map(|_| ()).err();
     assert_eq!(again(0.0), Some(Why::ZeroInterval));
     assert_eq!(again(-1.0), Some(Why::NegativeInterval));
     assert_eq!(again(f64::NAN), Some(Why::BadNumber));
     assert_eq!(again(1.0), None);
     let bent = Lens { distortion: Some([0.1; 4]), ..lens };
-    assert!(matches!(look(&view, &memory, &Moment::default(), &bent, &how), Err(Why::BadLens)));
+    assert!(matches!(look(&view, &memory, &Moment::straight(0.0), &bent, &how), Err(Why::BadLens)));
     let other = ImageView::new(48, 64, 1, &data).unwrap();
-    let later = Moment { time: 1.0, ..Moment::default() };
+    let later = Moment::straight(1.0);
     assert!(matches!(look(&other, &memory, &later, &lens, &how), Err(Why::WrongSize)));
     assert_eq!(verticals(&Gray::of(&view).unwrap(), 0.0, &Contours::default()), Err(Why::NoFeatures));
 }
@@ -94,7 +92,7 @@ fn same_values_and_flat_memory() {
             // There and back, so that frames go on without a jump.
             let at = if (k / 20) % 2 == 0 { k % 20 } else { 19 - k % 20 };
             let view = ImageView::new(width, height, 1, &frames[at]).unwrap();
-            let moment = Moment { time: k as f64 * 0.05, ..Moment::default() };
+            let moment = Moment::straight(k as f64 * 0.05);
             let (seen, next) = look(&view, &memory, &moment, &lens, &how).unwrap();
             assert!(next.edges.len() <= how.edges.most);
             assert!(next.edges.iter().all(|e| e.sights.len() <= how.edges.samples));
@@ -139,7 +137,7 @@ proptest! {
         for k in 0..10 {
             let data = make();
             let view = ImageView::new(width, height, channels, &data).unwrap();
-            let moment = Moment { time: f64::from(k) * 0.05, ..Moment::default() };
+            let moment = Moment::straight(f64::from(k) * 0.05);
             let (seen, next) = look(&view, &memory, &moment, &lens, &how).unwrap();
             for e in &seen.edges {
                 prop_assert!(e.sigma.is_finite() && e.strength.is_finite() && e.x(&lens).is_finite());

@@ -24,6 +24,7 @@ impl Compiler<'_> {
             }
             F::Brightness
             | F::Look
+            | F::Viewpoint
             | F::Obstacles
             | F::ContactByExpansion
             | F::ContactByFlow

@@ -1,0 +1,206 @@
+//! Looking at an image: from the registers of a call to what is seen.
+
+use super::sight::Sight;
+use soifra_graph::eval::FaultKind;
+use soifra_runtime::objects::{Frame, Optics, Shelf};
+use soifra_vision::{
+    Gray, ImageView, Lens, Why,
+    attitude::{Attitude, Rates},
+    contours::Thresholds,
+    course::{Body, Lane},
+    follow::Moment,
+    known::Remembering,
+    look::{Looking, Memory, look_at},
+    reckoning::{Motion, Stop, motion},
+    rectify::Rectification,
+};
+use std::sync::{Arc, Once};
+
+/// That OpenCV leaves the threads to us.
+static SINGLE: Once = Once::new();
+
+/// How far back the speed is measured, s.
+const RECENT: f64 = 0.4;
+
+/// A slower robot's way counts as time at this speed, m/s: it still sees what it saw a while ago.
+const SLOWEST: f64 = 0.25;
+
+/// A reading of an inertial unit.
+#[derive(Clone, Copy)]
+struct Tilted {
+    roll: f64,
+    pitch: f64,
+    rates: Rates,
+    captured: f64,
+}
+
+/// A reading of odometry.
+#[derive(Clone, Copy)]
+struct Reckoned {
+    place: [f64; 2],
+    yaw: f64,
+    forward: f64,
+    left: f64,
+    turn: f64,
+    captured: f64,
+}
+
+/// What a call asks for beside the image.
+struct Asked {
+    imu: Option<Tilted>,
+    odometry: Option<Reckoned>,
+    body: Body,
+    thresholds: Thresholds,
+    window: f64,
+}
+
+/// Looks at an image. The registers: image, sight before?, reading of an inertial unit?, of odometry?, half width and
+/// margin of the body, thresholds low? and high?, window.
+pub fn look(args: &[f64], shelf: &dyn Shelf) -> Result<Result<Sight, Why>, FaultKind> {
+    // What it gives does not depend on it.
+    SINGLE.call_once(|| {
+        let _ = soifra_vision::single_thread();
+    });
+    let mut rest = Registers(args);
+    let [image] = rest.take()?;
+    let before = rest.optional::<1>()?.map(|[n]| n);
+    let imu = rest.optional::<6>()?.map(|[roll, pitch, p, q, r, captured]| Tilted {
+        roll,
+        pitch,
+        rates: Rates { roll: p, pitch: q, yaw: r },
+        captured,
+    });
+    let odometry =
+        rest.optional::<14>()?.map(|[x, y, _, _, _, qz, qw, forward, left, _, _, _, turn, captured]| {
+            Reckoned { place: [x, y], yaw: 2.0 * libm::atan2(qz, qw), forward, left, turn, captured }
+        });
+    let [half_width, margin] = rest.take()?;
+    let (low, high) = (rest.optional::<1>()?, rest.optional::<1>()?);
+    let thresholds = match (low, high) {
+        (None, None) => Thresholds::Automatic,
+        // One of them tells the other, in the usual proportion.
+        (low, high) => {
+            let [high] = high.or(low.map(|[l]| [3.0 * l])).ok_or(FaultKind::Malformed)?;
+            Thresholds::Fixed { low: low.map_or(high / 3.0, |[l]| l), high }
+        }
+    };
+    let [window] = rest.take()?;
+    let object = shelf.get(image).ok_or(FaultKind::Unavailable("this image"))?;
+    let frame = object.as_any().downcast_ref::<Frame>().ok_or(FaultKind::Malformed)?;
+    let before = before.map(|b| shelf.get(b).ok_or(FaultKind::Unavailable("this sight"))).transpose()?;
+    let before = before.as_ref().and_then(|b| b.as_any().downcast_ref::<Sight>());
+    Ok(see(frame, before, &Asked { imu, odometry, body: Body { half_width, margin }, thresholds, window }))
+}
+
+/// Registers that are taken from the front.
+struct Registers<'a>(&'a [f64]);
+
+impl Registers<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[f64; N], FaultKind> {
+        let (first, rest) = self.0.split_first_chunk::<N>().ok_or(FaultKind::Malformed)?;
+        self.0 = rest;
+        Ok(*first)
+    }
+
+    fn optional<const N: usize>(&mut self) -> Result<Option<[f64; N]>, FaultKind> {
+        let [tag] = self.take()?;
+        let value = self.take()?;
+        Ok((tag == 0.0).then_some(value))
+    }
+}
+
+fn see(frame: &Frame, before: Option<&Sight>, asked: &Asked) -> Result<Sight, Why> {
+    let size = (frame.width as usize, frame.height as usize);
+    let gray = Gray::of(&ImageView::new(size.0, size.1, 3, &frame.data)?)?;
+    // Of another camera nothing is remembered.
+    let before = before.filter(|b| b.optics == frame.optics);
+    let [fx, fy] = frame.optics.focal;
+    // There a pixel's centre is a whole number.
+    let [cx, cy] = frame.optics.centre.map(|c| c - 0.5);
+    let lens = Lens { fx, fy, cx, cy, distortion: None };
+    let rectification = match (before, frame.optics.distortion) {
+        (_, None) => None,
+        (Some(Sight { rectification: Some(known), .. }), _) => Some(Arc::clone(known)),
+        (_, distortion) => {
+            let source = Lens { distortion, ..lens };
+            Some(Arc::new(Rectification::new(&source, size, &lens, size.0, size.1)?))
+        }
+    };
+    let gray = match &rectification {
+        Some(r) => r.apply(&gray)?,
+        None => gray,
+    };
+    let time = frame.captured.seconds();
+    let (stop, moving) = moving(time, before, asked)?;
+    let mut stops: Vec<Stop> = before.map(|b| b.stops.clone()).unwrap_or_default();
+    stops.retain(|s| time - s.time <= RECENT);
+    stops.push(stop);
+    let moment = moment(&stop, &moving, asked, &frame.optics);
+    let aside = frame.optics.aside(stop.yaw - moving.course);
+    let need = asked.body.half_width + asked.body.margin;
+    let mut how = Looking { lane: Lane { left: need - aside, right: -need - aside }, ..Looking::default() };
+    how.contours.thresholds = asked.thresholds;
+    how.remembering = asked.odometry.map(|_| (Remembering::default(), moving.speed));
+    how.pairing.window.length = asked.window;
+    how.edges.memory = how.edges.memory.max(asked.window);
+    let empty = Memory::default();
+    let memory = before.map_or(&empty, |b| &b.memory);
+    let interval = memory.time.map(|t| time - t);
+    let (seen, memory) = look_at(gray, memory, &moment, &lens, &how)?;
+    let speed = asked.odometry.map(|_| moving.speed);
+    let (body, optics) = (asked.body, frame.optics);
+    Ok(Sight { seen, memory, moment, stops, speed, body, interval, rectification, optics })
+}
+
+/// Where the body was at the image, and how it moved: readings are brought back to its instant by their own rates.
+fn moving(time: f64, before: Option<&Sight>, asked: &Asked) -> Result<(Stop, Motion), Why> {
+    let Some(o) = asked.odometry else {
+        // Straight ahead, at a speed that nobody knows.
+        let yaw = asked.imu.map_or(0.0, |_| before.map_or(0.0, |b| b.stops.last().map_or(0.0, |s| s.yaw)));
+        return Ok((Stop { time, place: [time, 0.0], yaw }, Motion { course: yaw, speed: 1.0 }));
+    };
+    let later = time - o.captured;
+    let turn = asked.imu.map_or(o.turn, |i| i.rates.yaw);
+    let yaw = o.yaw + turn * later;
+    let (s, c) = libm::sincos(yaw);
+    let place = [
+        o.place[0] + (o.forward * c - o.left * s) * later,
+        o.place[1] + (o.forward * s + o.left * c) * later,
+    ];
+    let stop = Stop { time, place, yaw };
+    let known = before.map_or(&[][..], |b| &b.stops[..]);
+    let moving = match motion(known, &stop) {
+        // Nothing to compare with yet: what the reading says.
+        Err(Why::TooShort) => {
+            let slip = if o.forward == 0.0 && o.left == 0.0 { 0.0 } else { libm::atan2(o.left, o.forward) };
+            Motion { course: yaw + slip, speed: libm::hypot(o.forward, o.left) }
+        }
+        other => other?,
+    };
+    Ok((stop, moving))
+}
+
+/// The camera at the image.
+fn moment(stop: &Stop, moving: &Motion, asked: &Asked, optics: &Optics) -> Moment {
+    let level = Tilted { roll: 0.0, pitch: 0.0, rates: Rates::default(), captured: stop.time };
+    let i = asked.imu.unwrap_or(level);
+    let later = stop.time - i.captured;
+    let body = Attitude {
+        roll: i.roll + i.rates.roll * later,
+        pitch: i.pitch + i.rates.pitch * later,
+        yaw: stop.yaw,
+    };
+    let at = body.level(optics.at);
+    let place = match asked.odometry {
+        Some(_) => [stop.place[0] + at[0], stop.place[1] + at[1]],
+        None => stop.place,
+    };
+    Moment {
+        time: stop.time,
+        attitude: body.looking_down(optics.tilt),
+        rates: i.rates.looking_down(optics.tilt),
+        place,
+        course: moving.course,
+        pace: if asked.odometry.is_some() { moving.speed.max(SLOWEST) } else { moving.speed },
+    }
+}
