@@ -258,15 +258,52 @@ pub enum ExpectKind {
     Finally(Expr),
 }
 
-/// A figure of the run, evaluated at its end.
+/// What becomes of the samples of a metric.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Keep {
+    /// Their sum; 0 without samples.
+    Sum,
+    /// Their mean.
+    Mean,
+    /// The least.
+    Least,
+    /// The greatest.
+    Most,
+}
+
+/// When a metric is sampled.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// What becomes of the samples.
+    pub keep: Keep,
+    /// A sample is taken at the end of every instant at which this has changed ...
+    pub upon: Expr,
+    /// ... and this holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub when: Option<Expr>,
+}
+
+/// A figure of the run, evaluated at its end or out of samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Metric {
     /// Name.
     pub name: Name,
     /// Value; stored in SI units.
     pub value: Expr,
+    /// When it is sampled; at the end of the run when absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<Samples>,
     /// Where it was written.
     pub at: Span,
+}
+
+impl Metric {
+    /// All its expressions.
+    pub fn exprs(&self) -> impl Iterator<Item = &Expr> {
+        let samples = self.samples.iter().flat_map(|s| std::iter::once(&s.upon).chain(&s.when));
+        std::iter::once(&self.value).chain(samples)
+    }
 }
 
 impl Graph {

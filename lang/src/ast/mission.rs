@@ -1,7 +1,7 @@
 //! Missions and tests.
 
 use super::{Arg, Constant, Entry, Expr, Ident, Param};
-use soifra_graph::Span;
+use soifra_graph::{Keep, Span};
 
 /// A mission.
 #[derive(Debug, Clone)]
@@ -34,13 +34,35 @@ pub enum MissionMember {
     /// `expect`
     Expect(Expect),
     /// `metric`
-    Metric(Constant),
+    Metric(Metric),
     /// `let`
     Constant(Constant),
     /// `world NAME`
     World(Ident),
     /// A world entry of the mission's own.
     Entry(Entry),
+}
+
+/// A figure of the run.
+#[derive(Debug, Clone)]
+pub struct Metric {
+    /// Name.
+    pub name: Ident,
+    /// Value, at the end or at every sample; none where samples are counted.
+    pub value: Option<Expr>,
+    /// When it is sampled; none for a value at the end.
+    pub samples: Option<Samples>,
+}
+
+/// When a metric is sampled, and what becomes of the samples.
+#[derive(Debug, Clone)]
+pub struct Samples {
+    /// `count` is the sum of ones.
+    pub keep: Keep,
+    /// Sampled whenever this changes ...
+    pub upon: Expr,
+    /// ... and this holds.
+    pub when: Option<Expr>,
 }
 
 /// A robot, or an array of robots.

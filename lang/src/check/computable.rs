@@ -14,7 +14,7 @@ pub fn check(g: &Graph) -> Vec<Diagnostic> {
     g.agents.iter().for_each(|a| walk::agent(a, &mut visit));
     g.functions.iter().for_each(|f| f.body.walk(&mut visit));
     let conditions = g.expects.iter().flat_map(|x| walk::conditions(&x.kind));
-    let metrics = g.metrics.iter().map(|m| &m.value);
+    let metrics = g.metrics.iter().flat_map(|m| m.exprs());
     std::iter::once(&g.done).chain(conditions).chain(metrics).for_each(|e| e.walk(&mut visit));
     found.out
 }

@@ -8,9 +8,7 @@ use soifra_graph::{Diagnostic, Expr, Graph, Op, RobotGroup};
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     whole(g, &g.done, &mut out);
-    for m in &g.metrics {
-        whole(g, &m.value, &mut out);
-    }
+    g.metrics.iter().flat_map(|m| m.exprs()).for_each(|e| whole(g, e, &mut out));
     for x in &g.expects {
         for e in walk::conditions(&x.kind) {
             if x.each_robot { asked_of_all(g, e, &mut out) } else { whole(g, e, &mut out) }

@@ -144,7 +144,10 @@ impl<'a> Types<'a> {
         }
         g.within.iter().for_each(|w| self.limit(w));
         for m in &g.metrics {
-            self.lone(&m.value, &[]);
+            m.exprs().for_each(|e| self.lone(e, &[]));
+            if let Some(when) = m.samples.as_ref().and_then(|s| s.when.as_ref()) {
+                self.want(when, &Type::Bool);
+            }
         }
         for s in g.goals.iter().flat_map(|goal| &goal.subgoals) {
             match s.agent.map(|a| g.agents.get(a as usize)) {

@@ -6,7 +6,7 @@ use crate::{
     modules::Program,
     typed::{Body, Checker, Place},
 };
-use soifra_graph::{Diagnostic, Dim, ExpectKind, Expectation, Expr, Goal, Op, Type, Value};
+use soifra_graph::{Diagnostic, Dim, ExpectKind, Expectation, Expr, Goal, Op, Samples, Type, Value, typing};
 
 impl<'a> Checker<'a> {
     /// Makes an agent's states and parameters nameable.
@@ -31,6 +31,26 @@ impl<'a> Checker<'a> {
             None => c.expr(e, None),
         })
         .0
+    }
+
+    /// When a metric is sampled: upon a change of something that can be compared.
+    pub(super) fn samples(&mut self, s: &ast::Samples) -> Option<Samples> {
+        let upon = self.truth_expr(&s.upon, None, false);
+        let when = s.when.as_ref().map(|w| self.truth_expr(w, Some(&Type::Bool), false));
+        let upon = upon?;
+        if typing::number(&upon.ty).is_none() && upon.ty != Type::Bool {
+            self.report(
+                Diagnostic::error(code::MISMATCH, format!("{} changes cannot be told", upon.ty))
+                    .at(upon.span, upon.ty.to_string())
+                    .hint("name a number or a Bool, such as a count that the agent keeps"),
+            );
+            return None;
+        }
+        let when = match when {
+            Some(when) => Some(when?),
+            None => None,
+        };
+        Some(Samples { keep: s.keep, upon, when })
     }
 
     pub(super) fn done(&mut self, m: &'a ast::Mission, goals: &[Goal]) -> Option<Expr> {

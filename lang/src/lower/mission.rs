@@ -8,7 +8,7 @@ use crate::{
     typed::{Body, Checker, Place},
 };
 use soifra_graph::{
-    Component, Diagnostic, Graph, Metric, Name, Param, RobotGroup, SCHEMA, Span, Type,
+    Component, Diagnostic, Expr, Graph, Metric, Name, Param, RobotGroup, SCHEMA, Span, Type, Value,
     component::{FAULT_ROLES, WORLD_ROLES},
     typing,
 };
@@ -210,7 +210,12 @@ impl<'a> Checker<'a> {
             match member {
                 M::Expect(e) => expects.extend(self.expectation(program, e)),
                 M::Metric(k) => {
-                    let Some(value) = self.truth_expr(&k.value, None, false) else { continue };
+                    let value = match &k.value {
+                        Some(value) => self.truth_expr(value, None, false),
+                        None => Some(Expr::constant(Value::Int(1), Type::Int, k.name.span)),
+                    };
+                    let samples = k.samples.as_ref().map(|s| self.samples(s));
+                    let (Some(value), false) = (value, matches!(samples, Some(None))) else { continue };
                     if typing::number(&value.ty).is_none() && value.ty != Type::Bool {
                         self.report(
                             Diagnostic::error(
@@ -222,7 +227,12 @@ impl<'a> Checker<'a> {
                         );
                         continue;
                     }
-                    metrics.push(Metric { name: k.name.name.clone(), value, at: k.name.span });
+                    metrics.push(Metric {
+                        name: k.name.name.clone(),
+                        value,
+                        samples: samples.flatten(),
+                        at: k.name.span,
+                    });
                 }
                 M::Constant(k) => {
                     let before = self.errors.len();

@@ -68,6 +68,7 @@ fn is_aside(rule: Rule) -> bool {
             | Rule::K_TOPIC
             | Rule::K_TEST
             | Rule::K_PARAM
+            | Rule::K_UPON
             | Rule::K_EXTENDS
             | Rule::K_IMPLEMENTS
             | Rule::K_CLOCK

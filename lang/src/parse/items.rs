@@ -3,7 +3,7 @@
 use super::{Builder, Cursor, Rule, unquote};
 use crate::{ast::*, code};
 use pest::iterators::Pair;
-use soifra_graph::{Diagnostic, pattern::parse_type};
+use soifra_graph::{Diagnostic, Keep, pattern::parse_type};
 
 type P<'i> = Pair<'i, Rule>;
 
@@ -88,7 +88,27 @@ impl Builder {
         Function { name, params, result, implements, lets, body }
     }
 
-    /// `let name = value`, `metric name = value`, `set name = value`: a name and an expression.
+    fn metric(&mut self, p: P<'_>) -> Metric {
+        let mut c = Cursor::new(p);
+        let name = self.ident(&mut c);
+        let Some(p) = c.take(Rule::sampled) else {
+            return Metric { name, value: Some(self.expr_in(&mut c)), samples: None };
+        };
+        let mut c = Cursor::new(p);
+        let words = [
+            (Rule::K_SUM, Keep::Sum),
+            (Rule::K_MEAN, Keep::Mean),
+            (Rule::K_LEAST, Keep::Least),
+            (Rule::K_MOST, Keep::Most),
+        ];
+        let keep = words.iter().find(|(w, _)| c.word(*w)).map(|(_, k)| *k);
+        let value = keep.is_some().then(|| self.expr_in(&mut c));
+        let upon = self.expr_in(&mut c);
+        let when = c.take(Rule::sampled_when).map(|p| self.expr_in(&mut Cursor::new(p)));
+        Metric { name, value, samples: Some(Samples { keep: keep.unwrap_or(Keep::Sum), upon, when }) }
+    }
+
+    /// `let name = value`, `set name = value`: a name and an expression.
     pub fn constant(&mut self, p: P<'_>) -> Constant {
         let mut c = Cursor::new(p);
         Constant { name: self.ident(&mut c), value: self.expr_in(&mut c) }
@@ -183,7 +203,7 @@ impl Builder {
                 Rule::done => MissionMember::Done(self.expr_in(&mut Cursor::new(p)), span),
                 Rule::within => MissionMember::Within(self.expr_in(&mut Cursor::new(p)), span),
                 Rule::expect => MissionMember::Expect(self.expect(p)),
-                Rule::metric => MissionMember::Metric(self.constant(p)),
+                Rule::metric => MissionMember::Metric(self.metric(p)),
                 Rule::constant => MissionMember::Constant(self.constant(p)),
                 Rule::world_use => MissionMember::World(self.ident(&mut Cursor::new(p))),
                 Rule::entry => MissionMember::Entry(self.entry(p)),

@@ -94,11 +94,15 @@ impl Engine<'_> {
     fn metrics(&mut self) -> BTreeMap<String, Option<f64>> {
         let mission = self.mission;
         let mut frame = std::mem::take(&mut self.judge.frame);
+        let gathered = std::mem::take(&mut self.judge.gathered);
         let mut court = self.court(self.now);
         let mut out = BTreeMap::new();
-        for (name, block) in &mission.judge.metrics {
-            let value = court.number(block, &mut frame).ok().filter(|x| x.is_finite());
-            out.insert(name.to_string(), value);
+        for (metric, gathered) in mission.judge.metrics.iter().zip(&gathered) {
+            let value = match &metric.samples {
+                Some(s) => gathered.value(s.keep),
+                None => court.number(&metric.value, &mut frame).ok(),
+            };
+            out.insert(metric.name.to_string(), value.filter(|x| x.is_finite()));
         }
         out
     }

@@ -6,6 +6,7 @@ use super::{
     cores::Tally,
     goals::Goals,
     regions::Regions,
+    sampled::Gathered,
     verdict::{Answer, Track},
 };
 use crate::{
@@ -164,6 +165,8 @@ pub(crate) struct Watch {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Judge {
     pub watches: Vec<Watch>,
+    /// One for each metric.
+    pub gathered: Vec<Gathered>,
     pub frame: Vec<f64>,
 }
 
@@ -209,6 +212,13 @@ impl Judge {
             }
         }
         court.robot = None;
+        if occasion != Occasion::Contact {
+            for (code, gathered) in mission.judge.metrics.iter().zip(&mut self.gathered) {
+                if let Some(samples) = &code.samples {
+                    gathered.step(&code.value, samples, court, &mut self.frame);
+                }
+            }
+        }
         Ok(())
     }
 }

@@ -34,6 +34,7 @@ mod queue;
 mod recorder;
 mod regions;
 pub mod report;
+mod sampled;
 mod senses;
 mod setup;
 pub(crate) mod snapshot;

@@ -21,6 +21,7 @@ use super::{
     queue::Queue,
     recorder::Recorder,
     regions::Regions,
+    sampled::Gathered,
     senses::Senses,
     store::Store,
     talks::Talks,
@@ -313,7 +314,8 @@ fn judge(mission: &Mission, scene: &Scene, start: &mut Start<'_>, truth: bool) -
         let blind = !truth && (code.truth || code.contacts);
         watches.push(Watch { tracks: vec![Track::default(); tracks], limit, blind, decided: Vec::new() });
     }
-    Ok(Judge { watches, frame: vec![0.0; mission.judge.frame.max(1)] })
+    let gathered = vec![Gathered::default(); mission.judge.metrics.len()];
+    Ok(Judge { watches, gathered, frame: vec![0.0; mission.judge.frame.max(1)] })
 }
 
 type OnReading = BTreeMap<(u32, u32), Vec<u32>>;

@@ -16,6 +16,7 @@ use super::{
     post::Waiting,
     queue::Agenda,
     report::FaultReport,
+    sampled::Gathered,
     senses::Senses,
     talks::Talks,
     verdict::Track,
@@ -51,6 +52,7 @@ pub struct Snapshot {
     contacts: Contacts,
     goals: Goals,
     tracks: Vec<Vec<Track>>,
+    gathered: Vec<Gathered>,
     poses: Vec<Option<([f64; 7], f64)>>,
     /// In the order of the platform.
     movers: Vec<(String, [f64; 7])>,
@@ -102,6 +104,7 @@ impl Engine<'_> {
                 contacts: self.contacts.clone(),
                 goals: self.goals.clone(),
                 tracks: self.judge.watches.iter().map(|w| w.tracks.clone()).collect(),
+                gathered: self.judge.gathered.clone(),
                 poses: self.poses.clone(),
                 movers: self.platform.truth().map(|t| t.movers()).unwrap_or_default(),
             };
@@ -136,6 +139,7 @@ impl Engine<'_> {
             && s.contacts.fits(&self.contacts)
             && s.goals.fits(&self.goals)
             && counts(&s.tracks) == counts(&tracks)
+            && s.gathered.len() == self.judge.gathered.len()
             && s.poses.len() == self.poses.len();
         if !fits
             || !self.queue.resume(s.agenda, [self.cast.instances.len(), units, s.cores.len()])
@@ -156,6 +160,7 @@ impl Engine<'_> {
         for (watch, tracks) in self.judge.watches.iter_mut().zip(s.tracks) {
             watch.tracks = tracks;
         }
+        self.judge.gathered = s.gathered;
         self.recorder.go_on(s.next);
         self.resumed = true;
         true

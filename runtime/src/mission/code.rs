@@ -2,7 +2,7 @@
 
 use crate::nodes::Tree;
 use soifra_graph::{
-    Misses, Name, Span, Type,
+    Keep, Misses, Name, Span, Type,
     eval::{Block, Layout},
 };
 
@@ -242,8 +242,21 @@ pub(crate) struct JudgeCode {
     /// Time limit, and whether it is in steps.
     pub within: Option<(Block, bool)>,
     pub expects: Vec<ExpectCode>,
-    pub metrics: Vec<(Name, Block)>,
+    pub metrics: Vec<MetricCode>,
     pub frame: usize,
+}
+
+pub(crate) struct MetricCode {
+    pub name: Name,
+    pub value: Block,
+    pub samples: Option<SamplesCode>,
+}
+
+/// When a metric is sampled.
+pub(crate) struct SamplesCode {
+    pub keep: Keep,
+    pub upon: Block,
+    pub when: Option<Block>,
 }
 
 pub(crate) struct ExpectCode {

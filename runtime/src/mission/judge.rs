@@ -25,7 +25,18 @@ pub(super) fn judge(c: &mut Compiler<'_>, graph: &Graph) -> Compiled<JudgeCode> 
         if block.width != 1 {
             return damaged(m.at, "a metric must be a number");
         }
-        metrics.push((m.name.clone(), block));
+        let samples = match &m.samples {
+            None => None,
+            Some(s) => {
+                let upon = alone(c, &s.upon, &[])?;
+                if upon.width != 1 {
+                    return damaged(s.upon.span, "a number or a Bool is wanted here");
+                }
+                let when = s.when.as_ref().map(|w| condition(c, w)).transpose()?;
+                Some(SamplesCode { keep: s.keep, upon, when })
+            }
+        };
+        metrics.push(MetricCode { name: m.name.clone(), value: block, samples });
     }
     let mut code = JudgeCode { done, within, expects, metrics, frame: 0 };
     code.frame = code.blocks().map(|b| b.frame as usize).max().unwrap_or(0);
@@ -84,7 +95,11 @@ impl JudgeCode {
     fn blocks(&self) -> impl Iterator<Item = &Block> {
         let limits = self.within.iter().map(|w| &w.0);
         let expects = self.expects.iter().flat_map(|e| e.kind.blocks());
-        std::iter::once(&self.done).chain(limits).chain(expects).chain(self.metrics.iter().map(|m| &m.1))
+        let metrics = self.metrics.iter().flat_map(|m| {
+            let samples = m.samples.iter().flat_map(|s| std::iter::once(&s.upon).chain(&s.when));
+            std::iter::once(&m.value).chain(samples)
+        });
+        std::iter::once(&self.done).chain(limits).chain(expects).chain(metrics)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Places need a speed in metres per second: a motion whose speed nobody knows leaves nothing to remember.
 
-use crate::course::Reach;
+use crate::course::{Lane, Reach};
 use crate::follow::Moment;
 use crate::lens::Lens;
 use crate::obstacle::Obstacle;
@@ -17,6 +17,10 @@ pub struct Known {
     pub right: [f64; 2],
     /// Unit vector away from where it was seen: it is taken to be as deep that way as it is wide.
     pub away: [f64; 2],
+    /// Numbers of the tracks of its edges as last seen, left and right.
+    pub ids: [u32; 2],
+    /// Which of the obstacles that are seen now it is.
+    pub which: Option<usize>,
     /// How often it was seen.
     pub sightings: u32,
     /// When it was last seen, s.
@@ -41,6 +45,8 @@ pub struct Remembering {
     pub same: f64,
     /// What is farther behind than this is forgotten, metres.
     pub behind: f64,
+    /// Largest ratio of the standard deviation to the time to contact.
+    pub uncertainty: f64,
     /// Widest obstacle remembered, metres.
     pub widest: f64,
     /// Most obstacles remembered.
@@ -49,7 +55,16 @@ pub struct Remembering {
 
 impl Default for Remembering {
     fn default() -> Self {
-        Self { fewest: 3, doubt: 1.5, farthest: 6.0, same: 0.3, behind: 1.0, widest: 4.0, most: 16 }
+        Self {
+            fewest: 3,
+            doubt: 1.5,
+            farthest: 6.0,
+            same: 0.3,
+            behind: 1.0,
+            uncertainty: 0.15,
+            widest: 4.0,
+            most: 16,
+        }
     }
 }
 
@@ -67,17 +82,19 @@ pub fn remember(
     let moves = speed > 0.5 * now.pace;
     let mut out: Vec<Known> = seen
         .iter()
-        .filter_map(|o| placed(o, now))
+        .enumerate()
+        .filter(|(_, o)| o.contact.sigma <= how.uncertainty * o.contact.ttc)
+        .filter_map(|(i, o)| Some(Known { which: Some(i), ..placed(o, now)? }))
         .filter(|k| ahead(k, now)[1] < how.farthest && k.width() < how.widest)
         .collect();
     for old in before {
-        let same = out.iter_mut().filter(|k| k.seen == now.time && gap(k, old) < how.same);
+        let same = out.iter_mut().filter(|k| k.which.is_some() && gap(k, old) < how.same);
         let joined = same.filter_map(|k| k.joined(old, now, how).map(|j| (k, j))).next();
         if let Some((known, joined)) = joined {
             *known = joined;
             continue;
         }
-        let mut old = *old;
+        let mut old = Known { which: None, ..*old };
         let interval = now.time - old.seen.max(now.time - 1.0);
         if moves && in_view(&old, now, lens, width) {
             old.missed += interval.clamp(0.0, 0.1);
@@ -101,7 +118,9 @@ fn placed(obstacle: &Obstacle, now: &Moment) -> Option<Known> {
     };
     let left = edge(obstacle.left_tangents.last()?.tangent, near_left);
     let right = edge(obstacle.right_tangents.last()?.tangent, near_right);
-    let known = Known { left, right, away: [c, s], sightings: 1, seen: now.time, missed: 0.0 };
+    let ids = [obstacle.left_id, obstacle.right_id];
+    let known =
+        Known { left, right, away: [c, s], ids, which: None, sightings: 1, seen: now.time, missed: 0.0 };
     left.iter().chain(&right).all(|v| v.is_finite()).then_some(known)
 }
 
@@ -143,8 +162,12 @@ impl Known {
             let [x, y] = from(p, now);
             libm::atan2(y, x)
         };
-        let left = if bearing(before.left) > bearing(self.left) { before.left } else { self.left };
-        let right = if bearing(before.right) < bearing(self.right) { before.right } else { self.right };
+        // The same edge is now known better.
+        let farther = |k: usize, by: f64| before.ids[k] != self.ids[k] && by > 0.0;
+        let left =
+            if farther(0, bearing(before.left) - bearing(self.left)) { before.left } else { self.left };
+        let right =
+            if farther(1, bearing(self.right) - bearing(before.right)) { before.right } else { self.right };
         let sightings = self.sightings.saturating_add(before.sightings);
         let joined = Known { left, right, away: before.away, sightings, ..*self };
         (joined.width() <= self.width().max(before.width()) + how.same).then_some(joined)
@@ -170,9 +193,11 @@ impl Known {
         })
     }
 
-    /// Whether it is seen at this moment.
-    pub fn is_seen(&self, now: &Moment) -> bool {
-        self.seen == now.time
+    /// How far ahead of the camera it is met in a lane; nothing when it is not in it.
+    pub fn met(&self, now: &Moment, lane: &Lane) -> Option<f64> {
+        let footprint = self.footprint(now.place, now.course);
+        let within = |p: &[f64; 2]| p[0] > 0.0 && lane.right < p[1] && p[1] < lane.left;
+        outline(&footprint).filter(within).map(|p| p[0]).reduce(f64::min)
     }
 }
 

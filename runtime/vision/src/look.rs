@@ -52,6 +52,8 @@ pub struct Seen {
     pub edges: Vec<Edge>,
     /// The obstacles, or why there is none: those in the lane before the others, each nearest first.
     pub obstacles: Result<Vec<Obstacle>, Why>,
+    /// Which of them is the first: the nearest that is known to be in the lane; of none that is known the first in the list.
+    pub first: Result<usize, Why>,
     /// Flow of points on the first obstacle since the last frame.
     pub flows: Vec<Flow>,
 }
@@ -114,20 +116,37 @@ pub fn look_at(
         }
         None => Vec::new(),
     };
-    if let Some(first) = found.as_ref().ok().and_then(|list| list.first()) {
+    let obstacles = found.as_deref().unwrap_or_default();
+    let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
+        remember(&memory.known, obstacles, moment, *speed, (lens, image.width()), remembering)
+    });
+    let first = first(&found, &known, moment, how);
+    if let Some(first) = first.ok().and_then(|i| obstacles.get(i)) {
         followed = points::replenish(followed, &image, &first.left, &first.right, moment, lens, &how.points);
     }
     let seen = Seen {
         edges: edges.iter().filter(|t| t.missed == 0).map(|t| t.edge).collect(),
         obstacles: found,
+        first,
         flows: points::flows(&followed),
     };
-    let obstacles = seen.obstacles.as_deref().unwrap_or_default();
-    let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
-        remember(&memory.known, obstacles, moment, *speed, (lens, image.width()), remembering)
-    });
     let memory = Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known };
     Ok((seen, memory))
+}
+
+/// Which of the obstacles that are seen is the first.
+fn first(
+    seen: &Result<Vec<Obstacle>, Why>,
+    known: &[Known],
+    moment: &Moment,
+    how: &Looking,
+) -> Result<usize, Why> {
+    let sure = known.iter().filter(|k| how.remembering.as_ref().is_some_and(|(r, _)| k.is_sure(r)));
+    let met = sure.filter_map(|k| k.met(moment, &how.lane).map(|ahead| (k, ahead)));
+    match met.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((known, _)) => known.which.ok_or(Why::NoObstacle),
+        None => seen.as_ref().map(|_| 0).map_err(|why| *why),
+    }
 }
 
 /// The published detection, from two frames alone.

@@ -58,7 +58,8 @@ impl Sight {
     }
 
     fn first(&self) -> Result<&Obstacle, Why> {
-        self.seen.obstacles.as_ref().map_err(|why| *why)?.first().ok_or(Why::NoObstacle)
+        let seen = self.seen.obstacles.as_ref().map_err(|why| *why)?;
+        seen.get(self.seen.first?).ok_or(Why::NoObstacle)
     }
 
     /// Count, then left, right, contact, deviation of each.
