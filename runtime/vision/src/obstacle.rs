@@ -32,6 +32,8 @@ pub struct Pairing {
     pub above: f64,
     /// An edge must begin below the horizon, or above it by no more than this tangent.
     pub horizon: f64,
+    /// ... or, of a tall one, above it by no more than this share of its upper end.
+    pub faint: f64,
     /// Narrowest obstacle, tangent.
     pub narrowest: f64,
     /// Smallest closing rate, 1/s: what is slower is far away.
@@ -51,6 +53,7 @@ impl Default for Pairing {
             ahead: 0.04,
             above: 0.03,
             horizon: 0.1,
+            faint: 0.5,
             narrowest: 0.02,
             slowest: 0.02,
             most: 8,
@@ -204,7 +207,14 @@ pub fn obstacles(
 fn stands(track: &EdgeTrack, sweep: &Sweep, how: &Pairing) -> bool {
     let latest = &track.sights[track.sights.len().saturating_sub(12)..];
     let above = if sweep.tangent.abs() < how.ahead { how.above } else { f64::NEG_INFINITY };
-    let standing = latest.iter().filter(|s| s.upright.upper > above && s.upright.lower < how.horizon).count();
+    let standing = latest
+        .iter()
+        .filter(|s| {
+            // A long edge may be too faint to be seen down to the floor.
+            let below = how.horizon.max(how.faint * s.upright.upper);
+            s.upright.upper > above && s.upright.lower < below
+        })
+        .count();
     3 * standing >= latest.len().max(1)
 }
 

@@ -70,7 +70,7 @@ pub struct Robust {
 
 impl Default for Robust {
     fn default() -> Self {
-        Self { baseline: 1.5, fewest: 4, rotating: 0.6, bend: 0.5, growth: 0.004, uncertainty: 0.5 }
+        Self { baseline: 1.5, fewest: 4, rotating: 0.6, bend: 0.5, growth: 0.004, uncertainty: 0.15 }
     }
 }
 
