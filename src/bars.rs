@@ -28,7 +28,7 @@ pub struct Study {
     /// Seeds as `soifra sweep` takes them.
     #[serde(default = "twenty")]
     pub seeds: String,
-    /// Seeds of the sample that the test suite runs.
+    /// Seeds of the sample that the test suite runs; empty for a study that takes too long.
     #[serde(default = "sample")]
     pub sample: String,
     /// Parameters, each with one value or several separated by commas.
@@ -70,6 +70,12 @@ pub struct Bar {
     /// What the figures are multiplied by, as 100 for centimetres.
     #[serde(default = "one")]
     pub scale: f64,
+    /// For a mean that is pooled: the metric that says how many samples each run's figure stands for.
+    #[serde(default)]
+    pub over: Option<String>,
+    /// For a share: the metric whose sum over all runs the sum of this one is divided by.
+    #[serde(default)]
+    pub per: Option<String>,
     /// What the bar is about.
     #[serde(default)]
     pub of: Statistic,
@@ -178,7 +184,7 @@ impl Study {
 
     /// What became of each bar, over all runs.
     pub fn verdicts(&self, document: &Document) -> Vec<Verdict> {
-        self.bars.iter().map(|b| b.verdict(document.summary.get(&b.metric))).collect()
+        self.bars.iter().map(|b| b.verdict(document)).collect()
     }
 
     /// The study as Markdown.
@@ -207,7 +213,11 @@ impl Study {
                 of(&|s| s.min),
                 of(&|s| s.max),
                 document.summary.get(&bar.metric).map_or(0, |s| s.n),
-                bar.words(),
+                match (bar.over.is_some() || bar.per.is_some(), bar.words().is_empty()) {
+                    (false, _) => bar.words(),
+                    (true, false) => format!("{} (is {})", bar.words(), scaled(verdict.value)),
+                    (true, true) => format!("pooled {}", scaled(verdict.value)),
+                },
                 match verdict.met {
                     Some(true) => "met",
                     Some(false) => "**missed**",
@@ -221,21 +231,41 @@ impl Study {
 }
 
 impl Bar {
-    fn verdict(&self, summary: Option<&Summary>) -> Verdict {
-        let value = summary.and_then(|s| match self.of {
-            Statistic::Mean => s.mean,
-            Statistic::Median => s.median,
-            Statistic::Min => s.min,
-            Statistic::Max => s.max,
-        });
+    fn verdict(&self, document: &Document) -> Verdict {
+        let value = self.value(document);
         let asked = self.at_most.is_some() || self.at_least.is_some();
         let holds = value
             .is_some_and(|v| self.at_most.is_none_or(|b| v <= b) && self.at_least.is_none_or(|b| v >= b));
         Verdict { metric: self.metric.clone(), value, met: asked.then_some(holds) }
     }
 
+    /// The figure the bar is about.
+    fn value(&self, document: &Document) -> Option<f64> {
+        let sums = |f: fn(f64, f64) -> [f64; 2], with: &str| {
+            let pair = |figures: Vec<(String, Option<f64>)>| {
+                let get = |name: &str| figures.iter().find(|(n, _)| n == name).and_then(|(_, v)| *v);
+                Some(f(get(&self.metric)?, get(with)?))
+            };
+            let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+            let [above, below] = document.runs.iter().filter_map(|r| pair(r.figures())).fold([0.0; 2], sum);
+            (below > 0.0).then(|| above / below)
+        };
+        match (&self.over, &self.per) {
+            (Some(over), _) => sums(|x, n| [x * n, n], over),
+            (None, Some(per)) => sums(|x, y| [x, y], per),
+            (None, None) => document.summary.get(&self.metric).and_then(|s| match self.of {
+                Statistic::Mean => s.mean,
+                Statistic::Median => s.median,
+                Statistic::Min => s.min,
+                Statistic::Max => s.max,
+            }),
+        }
+    }
+
     fn words(&self) -> String {
         let of = match self.of {
+            _ if self.over.is_some() => "pooled",
+            _ if self.per.is_some() => "share",
             Statistic::Mean => "mean",
             Statistic::Median => "median",
             Statistic::Min => "min",

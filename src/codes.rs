@@ -150,7 +150,7 @@ pub const PAGES: &[Page] = &[
     page(
         "S9026",
         "The file does not have the form that is wanted",
-        "A file of studies for `soifra measure` is a YAML list; the report gives the path to what is wrong in it. Fields of a study: `name`, `title`, `mission`, `seeds`, `sample`, `set`, `platforms`, `text`, `bars`. Fields of a bar: `metric`, `label`, `published`, `scale`, `of` (`mean`, `median`, `min`, `max`), `at_most`, `at_least`, `full_only`.",
+        "A file of studies for `soifra measure` is a YAML list; the report gives the path to what is wrong in it. Fields of a study: `name`, `title`, `mission`, `seeds`, `sample`, `set`, `platforms`, `text`, `bars`. Fields of a bar: `metric`, `label`, `published`, `scale`, `of` (`mean`, `median`, `min`, `max`), `over` (a mean of the runs' figures, weighted by this metric), `per` (the sum over all runs, divided by that of this metric), `at_most`, `at_least`, `full_only`.",
     ),
     page(
         "S9027",

@@ -150,7 +150,7 @@ impl Run {
     }
 
     /// Every figure of the run by name.
-    fn figures(&self) -> Vec<(String, Option<f64>)> {
+    pub fn figures(&self) -> Vec<(String, Option<f64>)> {
         let truth = |b: bool| Some(f64::from(u8::from(b)));
         let mut out = vec![
             ("success".to_string(), truth(self.outcome == "success")),

@@ -165,3 +165,52 @@ fn no_response_of_sporadic_tasks_is_longer_than_its_bound() {
     let (compared, reached) = sets("sporadic", SPORADIC);
     assert!(compared > 400 && reached > 50, "{compared} compared, {reached} reached");
 }
+
+/// From a reading to a command by a message that is told, a conversation and a parameter.
+#[test]
+fn chains_go_from_agent_to_agent() {
+    const TEXT: &str = r#"
+edition 1
+record Word { n: Int }
+protocol say<Say> { state start { initiator inform Say -> said } state said }
+conversation talk: say<Word> = channel(delay: 5 ms)
+param level: Int = 0
+platform cart {
+  body = cylinder(radius: 10 cm, height: 10 cm)
+  drive = holonomic(max_speed: 1 m/s, max_turn: 1 rad/s)
+  sensor pose = ideal_pose(period: 100 ms, latency: 1 ms)
+  actuator base = twist()
+  safe = stop()
+}
+agent eye {
+  sensor pose: Pose<map>
+  service look on sensor pose { tell head inform Word(n: if pose.position.x > 1 m then 1 else 0) }
+}
+agent head {
+  service think on inform Word(w) from eye { open talk inform Word(n: w.n) to offering(talk) }
+}
+agent hand {
+  offers talk
+  service hear on talk inform(w) { set level = w.n }
+}
+agent foot {
+  actuator base: Twist
+  state done = false
+  service go every 20 ms worst 2 ms {
+    set done = level > 0
+    command base twist(if level > 0 then 0 m/s else 0.1 m/s)
+  }
+}
+mission m {
+  robot a: cart at (0 m, 0 m) runs eye, head, hand, foot
+  goal g { subgoal s by foot achieved when done }
+  within 60 s
+}
+"#;
+    let timing = schedule::timing(&graph(TEXT));
+    let [chain] = &timing.chains[..] else { panic!("{:?}", timing.chains) };
+    let units: Vec<String> = chain.links.iter().map(|l| format!("{}.{}", l.agent, l.unit)).collect();
+    assert_eq!(units, ["eye.look", "head.think", "hand.hear", "foot.go"]);
+    // Latency of the sensor, 1 us told, 5 ms said, 1 us of the parameter, a period of waiting, and its execution.
+    assert_eq!(chain.latency, Some(1_000_000 + 1_000 + 5_000_000 + 1_000 + 20_000_000 + 2_000_000));
+}

@@ -113,6 +113,30 @@ fn metrics_without_a_value_are_null() {
     assert!((ran.report.metrics["way"].unwrap() - 2.0).abs() < 1e-9);
 }
 
+#[test]
+fn metrics_of_samples() {
+    let ran = run(&drive(
+        "metric n = count upon a.pilot.go.activations
+         metric late = count upon a.pilot.go.activations when now > 1 s
+         metric total = sum of now / 1 s upon a.pilot.go.activations
+         metric mean_time = mean of now upon a.pilot.go.activations
+         metric first = least of now upon a.pilot.go.activations
+         metric last = most of now upon a.pilot.go.activations
+         metric never = mean of now upon a.pilot.arrived when now < 1 s
+         metric none_at_all = sum of 1 upon a.pilot.arrived when now < 1 s
+         metric broken = mean of 1 / (steps_of(0) - 0) upon a.pilot.arrived",
+    ));
+    let m = |name: &str| ran.report.metrics[name];
+    // What it is at the end of the first instant is no change: activations at 0.1 s, 0.2 s …
+    let (n, last) = (m("n").unwrap(), m("last").unwrap());
+    assert!((n * 0.1 - last).abs() < 1e-9 && n > 15.0, "{n} {last}");
+    assert_eq!(m("late"), Some(n - 10.0));
+    assert!((m("total").unwrap() - 0.1 * n * (n + 1.0) / 2.0).abs() < 1e-9);
+    assert!((m("mean_time").unwrap() - 0.1 * (n + 1.0) / 2.0).abs() < 1e-9);
+    assert!((m("first").unwrap() - 0.1).abs() < 1e-9);
+    assert_eq!((m("never"), m("none_at_all"), m("broken")), (None, Some(0.0), None));
+}
+
 fn touch(from: i64, to: i64) -> impl FnOnce(&mut World) {
     move |w| {
         let with = "wall".to_string();

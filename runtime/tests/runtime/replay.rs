@@ -17,6 +17,7 @@ mission m {
   within 5 s
   expect never collision
   expect each robot: eventually truth.path_length >= 50 cm
+  metric paces = mean of (most robot: truth.path_length) upon (least robot: truth.path_length)
 }
 agent pilot {
   sensor pose: Pose<map>

@@ -5,7 +5,7 @@
 use crate::course::{Lane, Reach};
 use crate::follow::Moment;
 use crate::lens::Lens;
-use crate::obstacle::Obstacle;
+use crate::obstacle::{Obstacle, Post};
 use crate::turning::{Footprint, outline};
 
 /// An obstacle where it was last seen.
@@ -15,7 +15,8 @@ pub struct Known {
     pub left: [f64; 2],
     /// Its right edge.
     pub right: [f64; 2],
-    /// Unit vector away from where it was seen: it is taken to be as deep that way as it is wide.
+    /// Unit vector away from where it was seen: it is taken to be as deep that way as it is wide, and
+    /// at least a metre.
     pub away: [f64; 2],
     /// Numbers of the tracks of its edges as last seen, left and right.
     pub ids: [u32; 2],
@@ -29,6 +30,9 @@ pub struct Known {
     pub missed: f64,
 }
 
+/// The least depth of an obstacle, metres.
+const DEPTH: f64 = 1.0;
+
 /// How well the direction of motion is known, radians.
 const DRIFT: f64 = 0.01;
 
@@ -39,6 +43,8 @@ pub struct Remembering {
     pub fewest: u32,
     /// What is in full view and not seen for so long is not there, s.
     pub doubt: f64,
+    /// What is nearer than this is not doubted, metres.
+    pub near: f64,
     /// Farthest obstacle remembered, metres.
     pub farthest: f64,
     /// Two places nearer than this, from edge to edge, are of one obstacle, metres.
@@ -49,6 +55,10 @@ pub struct Remembering {
     pub uncertainty: f64,
     /// Widest obstacle remembered, metres.
     pub widest: f64,
+    /// How well the place of an edge by itself must be known, as a share of its distance.
+    pub doubtful: f64,
+    /// Farthest edge by itself that is remembered, metres.
+    pub beside: f64,
     /// Most obstacles remembered.
     pub most: usize,
 }
@@ -58,11 +68,14 @@ impl Default for Remembering {
         Self {
             fewest: 3,
             doubt: 1.5,
+            near: 2.5,
             farthest: 6.0,
             same: 0.3,
             behind: 1.0,
             uncertainty: 0.15,
             widest: 4.0,
+            doubtful: 0.08,
+            beside: 3.0,
             most: 16,
         }
     }
@@ -96,7 +109,8 @@ pub fn remember(
         }
         let mut old = Known { which: None, ..*old };
         let interval = now.time - old.seen.max(now.time - 1.0);
-        if moves && in_view(&old, now, lens, width) {
+        // What is near may hide its edges; forgetting it would be worse than believing in what is not there.
+        if moves && ahead(&old, now)[0] > how.near && in_view(&old, now, lens, width) {
             old.missed += interval.clamp(0.0, 0.1);
         }
         if old.is_sure(how) && old.missed < how.doubt && ahead(&old, now)[1] > -how.behind {
@@ -104,6 +118,20 @@ pub fn remember(
         }
     }
     out.truncate(how.most);
+    out
+}
+
+/// Edges by themselves that are known after a look: those placed now, and those known before that are not far behind.
+pub fn remember_posts(before: &[Post], now_placed: Vec<Post>, now: &Moment, how: &Remembering) -> Vec<Post> {
+    let near = |p: &Post| {
+        let [ahead, left] = from(p.place, now);
+        ahead > -how.behind && libm::hypot(ahead, left) < how.beside
+    };
+    let mut out = now_placed;
+    let old: Vec<Post> = before.iter().filter(|b| out.iter().all(|p| p.id != b.id)).copied().collect();
+    out.extend(old);
+    out.retain(near);
+    out.truncate(4 * how.most);
     out
 }
 
@@ -184,7 +212,7 @@ impl Known {
 
     /// Its corners as seen from the middle of a body at `place` that goes along `course`: metres ahead and to the left.
     pub fn footprint(&self, place: [f64; 2], course: f64) -> Footprint {
-        let depth = self.width();
+        let depth = self.width().max(DEPTH);
         let behind = |p: [f64; 2]| [p[0] + depth * self.away[0], p[1] + depth * self.away[1]];
         let (s, c) = libm::sincos(course);
         [self.left, self.right, behind(self.right), behind(self.left)].map(|p| {

@@ -5,9 +5,9 @@ use crate::course::Lane;
 use crate::edge::{Edge, nearest_pair};
 use crate::follow::{EdgeTrack, Following, Moment, follow};
 use crate::image::{Gray, ImageView};
-use crate::known::{Known, Remembering, remember};
+use crate::known::{Known, Remembering, remember, remember_posts};
 use crate::lens::Lens;
-use crate::obstacle::{Obstacle, Pairing, obstacles};
+use crate::obstacle::{Obstacle, Pairing, Post, obstacles, posts};
 use crate::points::{self, Flow};
 use crate::refine::{Refinement, refine};
 use crate::robust::PointTrack;
@@ -43,6 +43,8 @@ pub struct Memory {
     pub points: Vec<PointTrack>,
     /// Where obstacles stand.
     pub known: Vec<Known>,
+    /// Where edges by themselves stand.
+    pub posts: Vec<Post>,
 }
 
 /// What is seen in a frame.
@@ -120,6 +122,10 @@ pub fn look_at(
     let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
         remember(&memory.known, obstacles, moment, *speed, (lens, image.width()), remembering)
     });
+    let posts = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, _)| {
+        let placed = posts(&edges, moment, lens, remembering.doubtful, &how.pairing);
+        remember_posts(&memory.posts, placed, moment, remembering)
+    });
     let first = first(&found, &known, moment, how);
     if let Some(first) = first.ok().and_then(|i| obstacles.get(i)) {
         followed = points::replenish(followed, &image, &first.left, &first.right, moment, lens, &how.points);
@@ -130,7 +136,8 @@ pub fn look_at(
         first,
         flows: points::flows(&followed),
     };
-    let memory = Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known };
+    let memory =
+        Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known, posts };
     Ok((seen, memory))
 }
 

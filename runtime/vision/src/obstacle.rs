@@ -201,6 +201,40 @@ pub fn obstacles(
     Ok(chosen.into_iter().map(|p| obstacle(&candidates, p, lens)).collect())
 }
 
+/// An upright edge by itself, placed by its own bearings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Post {
+    /// Number of its track.
+    pub id: u32,
+    /// Where it stands, metres in the level frame.
+    pub place: [f64; 2],
+}
+
+/// The edges that can be placed by themselves as seen from `now`, each to a share `doubt` of its distance: those well off
+/// the course, seen for long. Other than pairs they tell nothing of what is between them.
+pub fn posts(tracks: &[EdgeTrack], now: &Moment, lens: &Lens, doubt: f64, how: &Pairing) -> Vec<Post> {
+    let noise = 0.03 / lens.fx;
+    let (s, c) = libm::sincos(now.course);
+    let placed = |track: &EdgeTrack| {
+        let all = tangents(track, now, how.window.length);
+        let settled = settled(&all, how.fewest, how.shortest, 5.0 * noise);
+        let long = settled.last()?.time - settled.first()?.time >= 2.0 * how.shortest;
+        let sweep = sweep(settled, how.fewest, noise).filter(|s| long && stands(track, s, how))?;
+        let off = libm::hypot(sweep.sigma, how.drift * sweep.bias());
+        if !(sweep.closing > 0.0 && off <= doubt * sweep.closing) {
+            return None;
+        }
+        let z = now.pace / sweep.closing;
+        let x = z * sweep.tangent;
+        let place = [now.place[0] + z * c - x * s, now.place[1] + z * s + x * c];
+        place.iter().all(|v| v.is_finite()).then_some(Post { id: track.id, place })
+    };
+    if !(now.is_finite() && now.pace > 0.0) {
+        return Vec::new();
+    }
+    tracks.iter().filter(|t| t.missed == 0).filter_map(placed).collect()
+}
+
 /// Does the edge stand on the floor and, where lines on the floor seem upright, rise above the horizon? Judged on its
 /// latest sightings, a third must agree: its ends flicker. A line on the floor that is seen elsewhere than straight
 /// ahead points at a place on the horizon that does not move, so that its closing rate gives it away.

@@ -41,8 +41,11 @@ pub fn free_turn(obstacles: &[Footprint], curve: &Curve, sign: f64) -> f64 {
         while curve.radius > 0.0 && checked + ARC <= turn {
             checked += ARC;
             let [x, y] = place(checked);
-            // What is beside it at the beginning it leaves behind.
-            let touches = |p: &[f64; 2]| p[0] > 0.0 && libm::hypot(p[0] - x, p[1] - y) < curve.half_width;
+            // What is near at the beginning it may leave behind.
+            let touches = |p: &[f64; 2]| {
+                let (first, then) = (libm::hypot(p[0], p[1]), libm::hypot(p[0] - x, p[1] - y));
+                then < need.min(first - 0.02)
+            };
             if outlines.iter().any(touches) {
                 return std::f64::consts::PI;
             }

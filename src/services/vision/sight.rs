@@ -9,7 +9,7 @@ use soifra_vision::{
     follow::Moment,
     known::{self, Remembering},
     look::{Memory, Seen},
-    obstacle::Obstacle,
+    obstacle::{Obstacle, Post},
     reckoning::Stop,
     rectify::Rectification,
     robust::{self, Part, Robust},
@@ -132,6 +132,9 @@ impl Sight {
         }
         let c = course::course(&reaches, &self.body)?;
         let distance = reaches.get(c.nearest).map_or(0.0, |r| r.ttc * now.pace + ahead);
+        // Edges by themselves count where it is narrow: beside the curve.
+        let posts = self.memory.posts.iter().map(|p| footprint_of(p, place, now.course));
+        let footprints: Vec<Footprint> = footprints.into_iter().chain(posts).collect();
         let Body { half_width, margin } = self.body;
         let curve = Curve { half_width, margin, radius, length: FREE };
         let turn = |sign| free_turn(&footprints, &curve, sign);
@@ -146,4 +149,11 @@ impl Sight {
         let course = self.moment.course;
         self.stops.last().map_or(course, |s| s.yaw) - course
     }
+}
+
+/// A post as a footprint without extent, from the middle of a body at `place` that goes along `course`.
+fn footprint_of(post: &Post, place: [f64; 2], course: f64) -> Footprint {
+    let (s, c) = libm::sincos(course);
+    let (x, y) = (post.place[0] - place[0], post.place[1] - place[1]);
+    [[x * c + y * s, y * c - x * s]; 4]
 }
