@@ -187,3 +187,22 @@ proptest! {
         prop_assert!((back[0] - x).abs() < 1e-6 && (back[1] - y).abs() < 1e-6);
     }
 }
+
+/// A camera that looks down on a tilted body sees what the two rotations together say, and turns as the body does.
+#[test]
+fn a_tilted_mount_is_a_rotation() {
+    let body = Attitude { roll: 0.1, pitch: -0.05, yaw: 0.7 };
+    for tilt in [0.0, 0.3, -0.2] {
+        let camera = body.looking_down(tilt);
+        let (s, c) = libm::sincos(tilt);
+        for ray in [[1.0, 0.0, 0.0], [0.9, 0.3, -0.2], [0.5, -0.7, 0.4]] {
+            let of_body = [c * ray[0] + s * ray[2], ray[1], c * ray[2] - s * ray[0]];
+            for (a, b) in camera.level(ray).iter().zip(body.level(of_body)) {
+                assert!((a - b).abs() < 1e-12, "{tilt} {ray:?}");
+            }
+        }
+        let rates = Rates { roll: 0.2, pitch: -0.1, yaw: 0.4 }.looking_down(tilt);
+        let size = |r: Rates| r.roll * r.roll + r.pitch * r.pitch + r.yaw * r.yaw;
+        assert!((size(rates) - 0.21).abs() < 1e-12);
+    }
+}
