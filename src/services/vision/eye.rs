@@ -156,8 +156,7 @@ fn see(frame: &Frame, before: Option<&Sight>, asked: &Asked) -> Result<Sight, Wh
 fn moving(time: f64, before: Option<&Sight>, asked: &Asked) -> Result<(Stop, Motion), Why> {
     let Some(o) = asked.odometry else {
         // Straight ahead, at a speed that nobody knows.
-        let yaw = asked.imu.map_or(0.0, |_| before.map_or(0.0, |b| b.stops.last().map_or(0.0, |s| s.yaw)));
-        return Ok((Stop { time, place: [time, 0.0], yaw }, Motion { course: yaw, speed: 1.0 }));
+        return Ok((Stop { time, place: [time, 0.0], yaw: 0.0 }, Motion { course: 0.0, speed: 1.0 }));
     };
     let later = time - o.captured;
     let turn = asked.imu.map_or(o.turn, |i| i.rates.yaw);
