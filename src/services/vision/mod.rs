@@ -31,7 +31,7 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
             optional(out, sight.robust_flow(*rotating).map(|t| [t]))
         }
         (Function::Diverging, []) => optional(out, sight.diverging().map(|b| [f64::from(u8::from(b))])),
-        (Function::CourseAhead, [radius]) => optional(out, sight.course(*radius)),
+        (Function::CourseAhead, [radius, least]) => optional(out, sight.course(*radius, *least)),
         _ => Err(FaultKind::Malformed),
     }
 }
