@@ -31,7 +31,7 @@ results: build
 
 bench: setup
 	@cargo bench --bench engine --bench swarm --bench check --bench run --bench message --bench matcher \
-	  --bench agents -- --quiet
+	  --bench agents --bench room -- --quiet
 
 fmt: setup
 	@cargo fmt --all
