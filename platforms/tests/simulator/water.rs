@@ -170,6 +170,27 @@ fn it_turns_as_fast_as_it_is_told_and_slides_on_a_little() {
     close(r.latest(0, 1)[8], 0.0, 5e-3);
 }
 
+/// A bias of the gyroscope turns what it takes for straight ahead.
+#[test]
+fn odometry_drifts_with_the_bias_of_its_gyroscope() {
+    let mut parts = submersible(&[]);
+    parts.push(part(
+        "sensor",
+        "log",
+        "flow_odometry",
+        &[
+            ("period", num(0.1)),
+            ("turn_bias", Value::Distribution(soifra_graph::Distribution::Uniform(0.01, 0.01))),
+        ],
+    ));
+    let mut r = Rig::new(&scene(parts, water(), &[[0.0, 0.0, 0.5]]));
+    r.drive(SETTLED, 0, 0.4, 0.0, 0.0);
+    r.poll(SETTLED + 20.0);
+    let heading = |o: &[f64]| 2.0 * libm::atan2(o[5], o[6]);
+    let drift = heading(r.latest(0, 2)) - heading(r.latest(0, 1));
+    close(drift, 0.01 * (SETTLED + 20.0), 1e-6);
+}
+
 #[test]
 fn it_lands_at_the_end_and_stays_there() {
     let mut r = rig(water());
