@@ -38,8 +38,8 @@ impl Extends for Mission {
     }
 }
 
-/// A declaration, what it extends, what that extends …, as far as there is such a thing, and what is wrong with the rest.
-/// `missing` says that there is none of a name.
+/// A declaration, what it extends, what that extends …, as far as there is such a thing, and what is wrong with the
+/// rest. `missing` says that there is none of a name.
 pub fn chain<'a, T: Extends>(
     first: &'a T,
     find: impl Fn(&Name) -> Option<&'a T>,
@@ -71,8 +71,8 @@ pub fn same_entry(a: &Entry, b: &Entry) -> bool {
     a.role.name == b.role.name && name(a) == name(b)
 }
 
-/// Gives every mission that extends another the members of that one; its own take the place of those of the same kind and name.
-/// Returns what is wrong with bases.
+/// Gives every mission that extends another the members of that one; its own take the place of those of the same kind
+/// and name. Returns what is wrong with bases.
 pub fn missions(program: &mut Program) -> Vec<Diagnostic> {
     let mut declared: BTreeMap<Name, Mission> = BTreeMap::new();
     for item in program.modules.iter().flat_map(|m| &m.tree.items) {

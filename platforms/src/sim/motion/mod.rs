@@ -107,8 +107,8 @@ pub trait DriveModel: fmt::Debug {
     }
 }
 
-/// Builds the drive model of a component, for a body of `mass` (kg). What leaves the ground takes off to `height` (m) over
-/// its start.
+/// Builds the drive model of a component, for a body of `mass` (kg). What leaves the ground takes off to `height` (m)
+/// over its start.
 pub fn build(args: Args<'_>, mass: f64, height: Option<f64>) -> Result<Box<dyn DriveModel>, String> {
     match &*args.part.model {
         "differential" => Ok(Box::new(differential::Model::new(args)?)),

@@ -1,5 +1,5 @@
-//! What holds a submersible at its commanded velocity over the ground: for each axis (ahead, left, up, turn) a controller with a
-//! sum of what is left, and thrusters that give no more than they can, and not at once.
+//! What holds a submersible at its commanded velocity over the ground: for each axis (ahead, left, up, turn) a
+//! controller with a sum of what is left, and thrusters that give no more than they can, and not at once.
 
 use crate::sim::body::seconds;
 use crate::sim::motion::SUBSTEP;
@@ -37,10 +37,11 @@ impl Autopilot {
         Autopilot { inertia, lag, most, thruster_lag, substep: gone(seconds(0, SUBSTEP), thruster_lag) }
     }
 
-    /// Thrust after `dt` seconds, with `wanted` velocities over the ground that are `now`. Without power there is none.
+    /// Thrust after `dt` seconds, with `wanted` velocities over the ground that are `now`. Without power there is
+    /// none.
     ///
-    /// The demand is m (w - 2 v) / τ + m ∫(w - v) / τ²: without drag and lag of the thrusters the speed follows with a first-order
-    /// lag of τ, and a steady current and drag leave no error.
+    /// The demand is m (w - 2 v) / τ + m ∫(w - v) / τ²: without drag and lag of the thrusters the speed follows with
+    /// a first-order lag of τ, and a steady current and drag leave no error.
     pub fn step(&self, from: Thrust, wanted: Axes, now: Axes, powered: bool, dt: f64) -> Thrust {
         let gone = if dt == seconds(0, SUBSTEP) { self.substep } else { gone(dt, self.thruster_lag) };
         let follow = |to: Axes| std::array::from_fn(|i| from.given[i] + (to[i] - from.given[i]) * gone);
@@ -61,8 +62,8 @@ impl Autopilot {
         Thrust { given: follow(limited), behind }
     }
 
-    /// The demand as far as the thrusters can meet it. Ahead, left and turn are given by the same ones: the shares of what each
-    /// would take alone add up, and where that is more than there is, all three get less in proportion.
+    /// The demand as far as the thrusters can meet it. Ahead, left and turn are given by the same ones: the shares of
+    /// what each would take alone add up, and where that is more than there is, all three get less in proportion.
     fn limited(&self, demand: Axes) -> Axes {
         let share = |i: usize| (demand[i] / self.most[i]).abs();
         let level = 1.0 / (share(0) + share(1) + share(3)).max(1.0);

@@ -1,8 +1,8 @@
 //! How water answers to a hull: rigid body and added mass, linear and quadratic drag.
 //!
-//! The equations of Fossen (Handbook of Marine Craft Hydrodynamics and Motion Control, 2011) for surge, sway, heave and yaw of a
-//! hull that is symmetric ahead and aside, and neutrally buoyant. In a steady current without vortices, what counts is the
-//! velocity against the water alone, for the added mass too.
+//! The equations of Fossen (Handbook of Marine Craft Hydrodynamics and Motion Control, 2011) for surge, sway, heave
+//! and yaw of a hull that is symmetric ahead and aside, and neutrally buoyant. In a steady current without vortices,
+//! what counts is the velocity against the water alone, for the added mass too.
 
 /// Velocity against the water, in base_link.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,8 +37,8 @@ impl Hull {
     pub fn step(&self, from: Motion, force: [f64; 3], torque: f64, dt: f64) -> Motion {
         let Motion { velocity: [u, v, _], turn: r } = from;
         let [mx, my, _] = self.mass;
-        // What the masses ask for because the frame turns, and the moment by which a hull at an angle to its way turns
-        // broadside on (Munk).
+        // What the masses ask for because the frame turns, and the moment by which a hull at an angle to its way
+        // turns broadside on (Munk).
         let turning = [my * v * r, -mx * u * r, 0.0];
         let munk = (mx - my) * u * v;
         let velocity = std::array::from_fn(|i| {

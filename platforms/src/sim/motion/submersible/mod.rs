@@ -1,7 +1,8 @@
 //! Thrusters under water: a body that water carries, and that holds itself against it.
 //!
-//! Roll and pitch are not simulated. A vehicle of this class is stable by itself, with its buoyancy above its weight, and has
-//! thrusters left to be held level; what remains is as small as the noise of an inertial unit.
+//! Roll and pitch are not simulated. A vehicle of this class is stable by itself, with its buoyancy above its weight,
+//! and has thrusters left to be held level; what remains is as small as the noise of an inertial unit. The autopilot
+//! is given true speeds and depth: the errors of a velocity log are those of the sensor that agents read.
 
 mod autopilot;
 mod hull;
@@ -38,7 +39,8 @@ struct Parameters {
 }
 
 impl Model {
-    /// From `submersible(…)`, with the mass of the body (kg) and the height of the platform's `prepare = take_off(height: …)`.
+    /// From `submersible(…)`, with the mass of the body (kg) and the height of the platform's `prepare =
+    /// take_off(height: …)`.
     pub fn new(args: Args<'_>, mass: f64, height: Option<f64>) -> Result<Model, String> {
         let Some(height) = height else {
             return Err(args.wrong("it swims: write `prepare = take_off(height: …)`"));
