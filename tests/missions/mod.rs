@@ -35,10 +35,23 @@ fn all_are_in_the_standard_form() {
     assert_eq!(code(&o), 0, "{}{}", String::from_utf8_lossy(&o.stdout), stderr(&o));
 }
 
+/// Folders by themselves, so that they are tested beside each other.
+const IMAGES: &str = "missions/soifra/";
+
 #[test]
 fn run_and_second_run_and_replay_are_the_same() {
-    let dir = folder("missions_same");
-    for (i, (path, _)) in missions().into_iter().filter(|(_, runnable)| *runnable).enumerate() {
+    same("missions_same", |path| !path.starts_with(IMAGES));
+}
+
+#[test]
+fn run_and_second_run_and_replay_are_the_same_with_images() {
+    same("images_same", |path| path.starts_with(IMAGES));
+}
+
+fn same(name: &str, which: impl Fn(&str) -> bool) {
+    let dir = folder(name);
+    let chosen = missions().into_iter().filter(|(path, runnable)| *runnable && which(path));
+    for (i, (path, _)) in chosen.enumerate() {
         let mut digests = Vec::new();
         for (name, threads) in [("a", "1"), ("b", "2")] {
             let trace = dir.join(format!("{i}{name}.mcap")).to_string_lossy().into_owned();
