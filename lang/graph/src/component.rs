@@ -53,6 +53,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "quadrotor(max_speed: Velocity, max_climb: Velocity, max_turn: AngularVelocity, max_tilt: Angle, attitude_lag: Duration = 80 ms, velocity_lag: Duration = 400 ms, turn_lag: Duration = 150 ms, drag: Frequency = 0.1 Hz, gust: Distribution<Acceleration> = 0)",
         "Four rotors: it tilts to go somewhere. The attitude is of second order with a natural frequency of 1 / attitude_lag, damped by 0.8; an autopilot holds the commanded speed with a time constant of velocity_lag, and the height; drag is the deceleration by the air for each m/s; a gust is an acceleration along each axis of map, drawn ten times a second",
     ),
+    (
+        "drive",
+        "recorded(file: Text = \"\", rate: Frequency? = none)",
+        "What was recorded, not simulated: sensors read the recording, and commands move nothing. `file` is a folder or a numbered pattern of images, a Y4M file or a trace, and `rate` how many images a second it has where it does not tell; both can be given with `--recording` and `--rate`",
+    ),
     ("cruise", "speed(of: Velocity)", "How fast the robot usually goes: `robot.cruise_speed`"),
     (
         "sensor",
@@ -93,6 +98,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "sensor",
         "camera(width: Int, height: Int, field_of_view: Angle, at: Vector<base_link>, period: Duration, latency: Duration = 0 s, tilt: Angle = 0, noise: Number = 0.008, gain: Number = 1, k1: Number = 0, k2: Number = 0) -> Image",
         "RGB images of the world from `at` on the robot, looking ahead and `tilt` down; the field of view is that of a row. Noise is the standard deviation of every channel, relative to white; gain is the exposure; k1 and k2 are the radial distortion of the lens. Without anybody who reads it nothing is rendered",
+    ),
+    (
+        "sensor",
+        "footage(field_of_view: Angle, at: Vector<base_link>, latency: Duration = 0 s, tilt: Angle = 0, k1: Number = 0, k2: Number = 0) -> Image",
+        "Images of a recording, of whatever size, taken from `at` on the robot, looking ahead and `tilt` down; the lens is declared as that of a camera. In a trace place and lens are those of the camera that took them",
     ),
     (
         "sensor",

@@ -56,6 +56,7 @@ const RULES: &[(&str, Must)] = &[
     ("pulse", Must::BePositive),
     ("radius", Must::BePositive),
     ("range", Must::AscendFromZero),
+    ("rate", Must::BePositive),
     ("reflectance", Must::BeAChance),
     ("repeat", Must::BePositive),
     ("size", Must::BePositive),
