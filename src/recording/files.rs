@@ -89,12 +89,14 @@ impl Files {
         };
         let (count, own) = match &kind {
             Kind::Pictures(paths) => (paths.len(), None),
-            Kind::Video(_, y4m) => (y4m.len(), y4m.rate),
+            Kind::Video(_, y4m) => (y4m.count(), y4m.rate),
         };
         let pace = match (rate, own) {
             (Some(rate), _) => Pace::Hertz(rate),
             (None, Some((n, d))) => Pace::Fraction(n, d),
-            (None, None) => return Err(Trouble::no_rate("nothing says how fast its images follow each other")),
+            (None, None) => {
+                return Err(Trouble::no_rate("nothing says how fast its images follow each other"));
+            }
         };
         match pace.usable(count) {
             true => Ok(Files { kind: Arc::new(kind), pace, count, size }),
@@ -110,12 +112,14 @@ impl Files {
     /// What there is for a sensor that is wanted.
     pub fn written(&self, wanted: &Wanted<'_>) -> Result<Written, Trouble> {
         if !matches!(&*wanted.part.model, "camera" | "footage") {
-            let seen = format!("images alone have no readings of `{}`, which an agent reads", wanted.sensor());
+            let seen =
+                format!("images alone have no readings of `{}`, which an agent reads", wanted.sensor());
             let hint = "run a mission that needs no more than a camera, or record a trace";
             return Err(Trouble::not_named(seen, hint));
         }
-        let optics = optics(wanted.platform, wanted.part, self.size.0, self.size.1)
-            .map_err(|why| Trouble::not_fitting(why, "declare the lens in the profile as that of the camera that took them"))?;
+        let optics = optics(wanted.platform, wanted.part, self.size.0, self.size.1).map_err(|why| {
+            Trouble::not_fitting(why, "declare the lens in the profile as that of the camera that took them")
+        })?;
         let latency = Time::from_seconds(wanted.part.number("latency")).unwrap_or(Time::ZERO);
         let stamp = |n: usize| {
             let captured = self.pace.at(n).unwrap_or(Time::MAX);
@@ -140,7 +144,10 @@ fn missing(path: &Path, e: &std::io::Error) -> Trouble {
     let hint = "check the path; it is taken from the current folder";
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty() && !f.exists());
     match folder {
-        Some(f) => Trouble::not_read("there is no such file or folder", format!("there is no folder `{}` either", f.display())),
+        Some(f) => Trouble::not_read(
+            "there is no such file or folder",
+            format!("there is no folder `{}` either", f.display()),
+        ),
         None => Trouble::not_read("there is no such file or folder", hint),
     }
 }
@@ -150,13 +157,19 @@ fn unsupported(first: &[u8]) -> Trouble {
     let convert = "convert it: `ffmpeg -i VIDEO -pix_fmt yuv420p FILE.y4m`";
     let (seen, hint) = match first {
         [] => ("the file is empty", "name a folder of images, a .y4m file or a trace"),
-        [0x89, b'P', b'N', b'G', ..] | [0xff, 0xd8, ..] => {
-            ("this is one image, not a recording", "name the folder that it is in, or a pattern as `frames/%04d.png`")
+        [0x89, b'P', b'N', b'G', ..] | [0xff, 0xd8, ..] => (
+            "this is one image, not a recording",
+            "name the folder that it is in, or a pattern as `frames/%04d.png`",
+        ),
+        [_, _, _, _, b'f', b't', b'y', b'p', ..] => {
+            ("this is an MP4 or MOV video, which cannot be read", convert)
         }
-        [_, _, _, _, b'f', b't', b'y', b'p', ..] => ("this is an MP4 or MOV video, which cannot be read", convert),
         [b'R', b'I', b'F', b'F', ..] => ("this is an AVI video, which cannot be read", convert),
         [0x1a, 0x45, 0xdf, 0xa3, ..] => ("this is a Matroska or WebM video, which cannot be read", convert),
-        _ => ("this is no format that can be read", "PNG and JPEG files, .y4m files and traces can; `ffmpeg -i VIDEO -pix_fmt yuv420p FILE.y4m` converts a video"),
+        _ => (
+            "this is no format that can be read",
+            "PNG and JPEG files, .y4m files and traces can; `ffmpeg -i VIDEO -pix_fmt yuv420p FILE.y4m` converts a video",
+        ),
     };
     Trouble::not_read(seen, hint)
 }

@@ -15,6 +15,8 @@ mod y4m;
 
 pub use again::Everywhere;
 pub use name::name;
+pub use pictures::{Decoded, decode};
+pub use trouble::Trouble;
 pub use y4m::Y4m;
 
 use crate::report::Refusal;
@@ -27,7 +29,6 @@ use soifra_runtime::{
 };
 use std::{fmt::Debug, sync::Arc};
 use trace::Taped;
-use trouble::Trouble;
 
 /// Recordings of recordings are followed so deep.
 const DEEPEST: u32 = 8;

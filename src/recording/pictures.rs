@@ -195,7 +195,9 @@ fn png(bytes: &[u8]) -> Result<Decoded, Trouble> {
         png::ColorType::GrayscaleAlpha => pixels.chunks_exact(2).flat_map(|p| [p[0]; 3]).collect(),
         png::ColorType::Rgb => pixels,
         png::ColorType::Rgba => pixels.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect(),
-        png::ColorType::Indexed => return Err(Trouble::not_read("a PNG whose colours are not expanded", AGAIN)),
+        png::ColorType::Indexed => {
+            return Err(Trouble::not_read("a PNG whose colours are not expanded", AGAIN));
+        }
     };
     Ok(Decoded { width, height, data })
 }

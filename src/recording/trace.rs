@@ -10,7 +10,8 @@ use soifra_runtime::{
 };
 use std::{collections::BTreeMap, sync::Arc};
 
-const ANOTHER: &str = "record another run, or choose a platform whose sensors are those of the recorded robot";
+const ANOTHER: &str =
+    "record another run, or choose a platform whose sensors are those of the recorded robot";
 
 /// A trace in memory, without what nobody asks for.
 #[derive(Debug)]
@@ -50,7 +51,9 @@ impl Taped {
         let hint = "name a trace that `soifra run` wrote";
         let wrong = |e: crate::trace_file::TraceError| Trouble::not_read(e.to_string(), hint);
         let mut trace = Reader::open(path).and_then(Reader::into_trace).map_err(wrong)?;
-        trace.records.retain(|r| matches!(r.event, Event::Reading { .. } | Event::Image { .. } | Event::End { .. }));
+        trace
+            .records
+            .retain(|r| matches!(r.event, Event::Reading { .. } | Event::Image { .. } | Event::End { .. }));
         Ok(Taped { trace, depth })
     }
 
@@ -75,7 +78,9 @@ impl Taped {
                     registers.extend_from_slice(values);
                     stamps.push(Stamp { captured: *captured, delivered: record.t });
                 }
-                Event::Image { robot: r, sensor: s, captured, view, digest, .. } if (*r, *s) == (robot, sensor) => {
+                Event::Image { robot: r, sensor: s, captured, view, digest, .. }
+                    if (*r, *s) == (robot, sensor) =>
+                {
                     taken.push(Taken { captured: *captured, view: view.clone(), digest: digest.clone() });
                     stamps.push(Stamp { captured: *captured, delivered: record.t });
                 }
@@ -83,7 +88,10 @@ impl Taped {
             }
         }
         if stamps.is_empty() {
-            let seen = format!("nobody read `{}` in the recorded run, so nothing is recorded of it", wanted.sensor());
+            let seen = format!(
+                "nobody read `{}` in the recorded run, so nothing is recorded of it",
+                wanted.sensor()
+            );
             return Err(Trouble::not_named(seen, ANOTHER));
         }
         if taken.is_empty() {
@@ -102,7 +110,11 @@ impl Taped {
         };
         let Some(robot) = robot else {
             let names: Vec<&str> = bodies.iter().map(|r| r.name.as_str()).collect();
-            let seen = format!("no robot in the recorded run is called `{}`; there were {}", wanted.robot, names.join(", "));
+            let seen = format!(
+                "no robot in the recorded run is called `{}`; there were {}",
+                wanted.robot,
+                names.join(", ")
+            );
             return Err(Trouble::not_named(seen, "give the robot of the mission the name of one of them"));
         };
         let platform = bodies.get(robot).and_then(|r: &RobotScene| scene.platforms.get(r.platform as usize));
@@ -112,12 +124,17 @@ impl Taped {
         let place = platform.and_then(|p| p.of_role("sensor").position(|s| s.name == wanted.part.name));
         let Some(sensor) = place else {
             let names: Vec<String> = platform.map(sensors).unwrap_or_default().into_keys().collect();
-            let seen = format!("the recorded robot had no sensor `{}`; it had {}", wanted.sensor(), names.join(", "));
+            let seen = format!(
+                "the recorded robot had no sensor `{}`; it had {}",
+                wanted.sensor(),
+                names.join(", ")
+            );
             return Err(Trouble::not_named(seen, ANOTHER));
         };
         let ty = platform.and_then(|p| p.of_role("sensor").nth(sensor)).and_then(|s| s.ty.clone());
         if ty != wanted.part.ty {
-            let shown = |t: &Option<soifra_graph::Type>| t.as_ref().map_or("nothing".into(), ToString::to_string);
+            let shown =
+                |t: &Option<soifra_graph::Type>| t.as_ref().map_or("nothing".into(), ToString::to_string);
             let seen = format!(
                 "`{}` gave {} in the recorded run, and {} is wanted",
                 wanted.sensor(),

@@ -48,8 +48,9 @@ impl Y4m {
         while at < length {
             let n = y4m.frames.len();
             let cut_off = || {
-                let hint =
-                    format!("it was cut off while it was written; make one of {n} frames with `ffmpeg -frames:v {n}`");
+                let hint = format!(
+                    "it was cut off while it was written; make one of {n} frames with `ffmpeg -frames:v {n}`"
+                );
                 Trouble::not_read(format!("the file ends within frame {n}"), hint)
             };
             let (head, data) = line(input, at, length)?.ok_or_else(cut_off)?;
@@ -67,13 +68,14 @@ impl Y4m {
     }
 
     /// How many frames there are.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.frames.len()
     }
 
     /// A frame as RGB.
     pub fn image(&self, input: &mut (impl Read + Seek), number: usize) -> Result<Vec<u8>, Trouble> {
-        let at = *self.frames.get(number).ok_or_else(|| Trouble::not_read("there is no such frame", WRITE))?;
+        let at =
+            *self.frames.get(number).ok_or_else(|| Trouble::not_read("there is no such frame", WRITE))?;
         let mut planes = vec![0; self.size()];
         input.seek(SeekFrom::Start(at)).map_err(|e| Trouble::io(&e))?;
         input.read_exact(&mut planes).map_err(|e| Trouble::io(&e))?;
@@ -161,7 +163,8 @@ impl Y4m {
 fn side(what: &str, text: &str) -> Result<usize, Trouble> {
     let side = text.parse().ok().filter(|s| (1..=MOST_PIXELS).contains(s));
     side.ok_or_else(|| {
-        let hint = format!("images have 1 to {MOST_PIXELS} pixels a side; `ffmpeg -vf scale=…` makes them smaller");
+        let hint =
+            format!("images have 1 to {MOST_PIXELS} pixels a side; `ffmpeg -vf scale=…` makes them smaller");
         Trouble::not_read(format!("a {what} of {text:?} pixels"), hint)
     })
 }
@@ -178,7 +181,9 @@ fn sampling(text: &str) -> Result<Sampling, Trouble> {
         "444" => Some((1, 1)),
         "mono" => None,
         other => {
-            let seen = format!("its colours are stored as {other:?}; 420, 422, 444 and mono with 8 bits can be read");
+            let seen = format!(
+                "its colours are stored as {other:?}; 420, 422, 444 and mono with 8 bits can be read"
+            );
             return Err(Trouble::not_read(seen, WRITE));
         }
     }))

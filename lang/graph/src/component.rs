@@ -102,7 +102,7 @@ const TABLE: &[(&str, &str, &str)] = &[
     (
         "sensor",
         "footage(field_of_view: Angle, at: Vector<base_link>, latency: Duration = 0 s, tilt: Angle = 0, k1: Number = 0, k2: Number = 0) -> Image",
-        "Images of a recording, of whatever size, taken from `at` on the robot, looking ahead and `tilt` down; the lens is declared as that of a camera. In a trace place and lens are those of the camera that took them",
+        "Images of a recording, of whatever size, taken from `at` on the robot, looking ahead and `tilt` down; the lens is declared as that of a camera. In a trace place and lens are those of the camera that took them. A reading counts until the next one",
     ),
     (
         "sensor",

@@ -23,8 +23,9 @@ pub fn optics(platform: &PlatformScene, part: &Part, width: usize, height: usize
         let declared = (side("width")?, side("height")?);
         if declared != (width, height) {
             let (w, h) = declared;
-            return Err(args
-                .wrong(format_args!("it is declared with {w} x {h} pixels, the images have {width} x {height}")));
+            return Err(args.wrong(format_args!(
+                "it is declared with {w} x {h} pixels, the images have {width} x {height}"
+            )));
         }
     }
     let [k1, k2] = [args.number("k1")?, args.number("k2")?];

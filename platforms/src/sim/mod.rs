@@ -28,8 +28,8 @@ use collision::Collisions;
 use motion::{Drive, Stride};
 use movers::Mover;
 use power::Battery;
-pub(crate) use scene::{Endings, endings};
 use scene::Things;
+pub(crate) use scene::{Endings, endings};
 use schedule::Schedule;
 use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
 
