@@ -1,6 +1,8 @@
 //! Every shipped mission: it passes the check, is in the standard form, and its run, a second run and the
 //! replay of the first are the same.
 
+mod blind;
+
 use crate::support::{code, files, folder, json, root, soifra, stderr};
 use std::path::PathBuf;
 
