@@ -87,3 +87,67 @@ fn it_goes_on_when_it_sees_again() {
     assert!(metric(&report, "way") > 1.0, "{report}");
     assert!(notes.contains("nothing seen for"), "{notes}");
 }
+
+/// A robot that stands before an obstacle and looks at it.
+const STANDING: &str = "
+edition 1
+import std.vision
+
+agent watcher {
+  sensor camera: Image
+  sensor imu: Imu
+  sensor odometry: Odometry
+  state sight: Sight? = none
+  state looks: Int = 0
+  state answers: Int = 0
+
+  service watch on sensor camera {
+    match look(camera, before: sight, imu: imu, odometry: odometry) {
+      some(s) => {
+        set sight = some(s)
+        set looks = looks + 1
+        match expansion(s) {
+          some(t) => set answers = answers + 1
+          none(why) => note \"by expansion\", why
+        }
+        match flow(s) {
+          some(t) => set answers = answers + 1
+          none(why) => note \"by flow\", why
+        }
+        match flow_robust(s) {
+          some(t) => set answers = answers + 1
+          none(why) => note \"by robust flow\", why
+        }
+      }
+      none(why) => note \"blind\", why
+    }
+  }
+}
+
+mission stand {
+  world square_room
+  robot scout: turtlebot2 at pose((-9 m, 0 m), 0 deg) runs watcher
+  goal watch { subgoal watch by watcher achieved when looks > 20 }
+  done when now >= 2 s
+  within 10 s
+  metric answers = scout.watcher.answers
+  metric looks = scout.watcher.looks
+}
+";
+
+#[test]
+fn who_stands_meets_nothing() {
+    let dir = folder("blind_standing");
+    let path = file(&dir, "stand.soi", STANDING);
+    let trace = dir.join("stand.mcap").to_string_lossy().into_owned();
+    let o = soifra(&["run", &path, "--trace", &trace, "--format", "json"]);
+    assert_eq!(code(&o), 0, "{}{}", stdout(&o), stderr(&o));
+    let report = json(&o);
+    assert_eq!(metric(&report, "answers"), 0.0, "{report}");
+    assert!(metric(&report, "looks") > 30.0, "{report}");
+    let log = stdout(&soifra(&["log", &trace]));
+    for way in ["by expansion", "by flow", "by robust flow"] {
+        let of = log.lines().filter(|l| l.contains(&format!("{way}: "))).count() as f64;
+        assert_eq!(of, metric(&report, "looks"), "{way}: {log}");
+    }
+}

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod bytes;
+mod nothing_seen;
 mod support;
 
 use crate::support::{code, file, folder, json, soifra, stderr};
