@@ -2,6 +2,7 @@
 //! replay of the first are the same.
 
 mod blind;
+mod detection;
 
 use crate::support::{code, files, folder, json, root, soifra, stderr};
 use std::path::PathBuf;

@@ -2,7 +2,7 @@
 
 mod bad_input;
 mod bytes;
-mod nothing_seen;
+pub mod nothing_seen;
 mod support;
 
 use crate::support::{code, file, folder, json, soifra, stderr};
@@ -10,7 +10,8 @@ use serde_json::Value;
 use std::path::Path;
 use support::{RATE, contact, files, jpeg, png, y4m};
 
-const MISSION: &str = "missions/soifra/footage.soi";
+/// The shipped mission that looks at recordings.
+pub const MISSION: &str = "missions/soifra/footage.soi";
 
 /// Runs the shipped mission on a recording; the report and the trace.
 fn look(dir: &Path, recording: &str, more: &[&str]) -> (Value, String) {
