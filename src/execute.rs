@@ -131,6 +131,9 @@ impl<'m> Prepared<'m> {
         stop: &AtomicBool,
         pacer: Option<&mut dyn Pacer>,
     ) -> Result<(RunReport, trace_file::Finished), Refusal> {
+        for recording in self.recording.iter().flat_map(|r| r.paths()) {
+            files::keep_apart(recording, path)?;
+        }
         // A run that cannot start leaves no file, and none that was there is emptied.
         self.starts()?;
         let header = header(self.mission, &self.settings, &self.scene)?;

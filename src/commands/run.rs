@@ -115,9 +115,6 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     };
     if let Some(path) = &path {
         files::keep_apart(&a.mission.file, path)?;
-        if let Some(recording) = &a.recording {
-            files::keep_apart(recording, path)?;
-        }
     }
     let mut pacer = match a.realtime {
         true => {

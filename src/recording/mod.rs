@@ -63,7 +63,8 @@ trait Shots: Debug + Send + Sync {
 /// All recordings of a scene, opened.
 #[derive(Debug)]
 pub struct Opened {
-    path: String,
+    /// Where they lie, by robot.
+    paths: Vec<String>,
     /// Robot, sensor, and what is written of it.
     written: Vec<(u32, u32, Written)>,
     end: Time,
@@ -101,7 +102,7 @@ fn open_at(scene: &Scene, care: Care, depth: u32) -> Result<Option<Opened>, (Str
         let seen = format!("recordings of recordings, more than {DEEPEST} deep");
         return Err((String::new(), Trouble::not_read(seen, "record what was seen first")));
     }
-    let mut opened = Opened { path: String::new(), written: Vec::new(), end: Time::ZERO };
+    let mut opened = Opened { paths: Vec::new(), written: Vec::new(), end: Time::ZERO };
     for (r, robot) in (0..).zip(scene.bodies()) {
         let Some((platform, drive)) = drive(robot.platform) else { continue };
         let path = match drive.args.get("file") {
@@ -120,7 +121,7 @@ fn open_at(scene: &Scene, care: Care, depth: u32) -> Result<Option<Opened>, (Str
         let (written, end) = of_path(&path, rate, &wanted, care, depth).map_err(|t| (path.clone(), t))?;
         opened.written.extend(written.into_iter().map(|(s, w)| (r, s, w)));
         opened.end = opened.end.max(end);
-        opened.path = path;
+        opened.paths.push(path);
     }
     Ok(Some(opened))
 }
@@ -150,16 +151,22 @@ fn of_path(
 }
 
 impl Opened {
+    /// Where they lie.
+    pub fn paths(&self) -> &[String] {
+        &self.paths
+    }
+
     /// As a platform, from its beginning.
     pub fn platform(&self, scene: &Scene) -> Result<Recording, Refusal> {
         let mut tracks = Vec::new();
         for (robot, sensor, written) in &self.written {
+            let path = self.paths.get(*robot as usize).map_or("", String::as_str);
             let (stamps, what) = match written {
                 Written::Numbers { stamps, width, registers } => {
                     (stamps, What::Numbers(*width, registers.to_vec()))
                 }
                 Written::Images { stamps, shots } => {
-                    (stamps, What::Images(shots.show().map_err(|t| t.refusal(&self.path))?))
+                    (stamps, What::Images(shots.show().map_err(|t| t.refusal(path))?))
                 }
             };
             tracks.push(Track { robot: *robot, sensor: *sensor, stamps: stamps.clone(), what });

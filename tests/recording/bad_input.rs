@@ -154,6 +154,24 @@ fn videos_that_cannot_be_read() {
 }
 
 #[test]
+fn a_trace_over_its_own_recording() {
+    let dir = folder("recording_over");
+    let video = file(&dir, "box.y4m", y4m(3));
+    // Named on the command line, or in the profile.
+    let shipped = std::fs::read_to_string(crate::support::root().join(MISSION)).expect("the mission");
+    let drive =
+        format!("platform my_camera extends recorded_camera {{\n  drive = recorded(file: \"{video}\")");
+    let own = file(&dir, "own.soi", shipped.replace("platform my_camera extends recorded_camera {", &drive));
+    for arguments in [vec!["run", MISSION, "--recording", &video], vec!["run", &own]] {
+        let o = soifra(&[&arguments[..], &["--trace", &video]].concat());
+        assert_eq!((code(&o), stderr(&o).contains("S9012")), (2, true), "{arguments:?}: {}", stderr(&o));
+        assert_eq!(std::fs::read(&video).expect("the video"), y4m(3));
+        let o = soifra(&[&arguments[..], &["--trace", "none"]].concat());
+        assert_eq!(code(&o), 0, "{arguments:?}: {}", stderr(&o));
+    }
+}
+
+#[test]
 fn rates_that_are_none() {
     let dir = folder("recording_rates");
     let folder = files(&dir.join("png"), 2, "png", png);
