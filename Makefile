@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 export PATH := $(PATH):$(HOME)/.cargo/bin
 SOIFRA := target/release/soifra
-MISSION ?= missions/khepera/sim1.soi
+MISSION ?= missions/soifra/room.soi
 SEED ?= 1
 
 .PHONY: help setup build run test results bench fmt lint docs clean
@@ -31,7 +31,7 @@ results: build
 
 bench: setup
 	@cargo bench --bench engine --bench swarm --bench check --bench run --bench message --bench matcher \
-	  --bench agents -- --quiet
+	  --bench agents --bench room -- --quiet
 
 fmt: setup
 	@cargo fmt --all

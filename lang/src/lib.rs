@@ -7,6 +7,7 @@ pub mod check;
 pub mod code;
 pub(crate) mod conversation;
 mod decls;
+mod derived;
 mod explain;
 pub mod format;
 mod lower;
@@ -67,6 +68,7 @@ pub struct CheckOptions {
 pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOptions) -> Checked {
     let mut program = modules::Program::load(path, text, loader);
     let mut diagnostics = std::mem::take(&mut program.errors);
+    let mut later = derived::missions(&mut program);
     let decls = decls::Decls::collect(&program, &mut diagnostics);
     // A test says which mission it is about.
     let run = decls.tests.iter().find(|t| options.test.as_deref() == Some(&*t.name.name));
@@ -96,7 +98,6 @@ pub fn check(path: &str, text: &str, loader: &mut dyn Loader, options: &CheckOpt
     };
     let syntax_failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let unseen = unseen::Unseen::of(&program, &diagnostics);
-    let mut later = Vec::new();
     let choice = lower::Choice {
         platform: options.platform.clone(),
         alternative: 0,

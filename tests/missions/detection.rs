@@ -33,7 +33,7 @@ agent watcher {
     match look(camera, before: sight, imu: imu, odometry: odometry, half_width: robot.radius) {
       some(s) => {
         set sight = some(s)
-        match detection(s, 1 m) {
+        match detection(s, 1 m, 0 rad) {
           some(c) => {
             set distance = distance_since(s, distance: c.distance, instant: now)
             set collision = collision + (if c.collision then 1 else 0)
@@ -96,7 +96,7 @@ fn the_published_detection_says_why_it_says_nothing() {
     let shipped =
         std::fs::read_to_string(crate::support::root().join(recording::MISSION)).expect("a mission");
     // The same mission, which notes what the detection says instead of the time to contact.
-    let asked = shipped.replace("match ttc(s) {", "match published(s, 1 m) {");
+    let asked = shipped.replace("match ttc(s) {", "match published(s, 1 m, 0 rad) {");
     let asked = asked.replace("set contact = some(t)", "set contact = some(t.distance / 1 m/s)");
     let asked = asked.replace("note \"time to contact\", t\n", "note \"distance\", t.distance\n");
     let path = file(&dir, "asked.soi", asked);

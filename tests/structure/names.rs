@@ -14,6 +14,7 @@ const NAMES: &[&str] = &[
     "ar_drone",
     "parrot",
     "hector",
+    "bluerov",
     "pioneer",
     "p3dx",
     "corobot",

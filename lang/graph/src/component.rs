@@ -28,7 +28,7 @@ pub const PLATFORM_ROLES: &[&str] =
     &["body", "drive", "cruise", "power", "sensor", "actuator", "safe", "prepare", "finish"];
 /// Roles a world has.
 pub const WORLD_ROLES: &[&str] =
-    &["bounds", "floor", "light", "wall", "obstacle", "region", "mover", "parcel", "material"];
+    &["bounds", "floor", "light", "current", "wall", "obstacle", "region", "mover", "parcel", "material"];
 /// Roles a mission or test has besides those of its world.
 pub const FAULT_ROLES: &[&str] = &["fault"];
 
@@ -58,6 +58,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "recorded(file: Text = \"\", rate: Frequency? = none)",
         "What was recorded, not simulated: sensors read the recording, and commands move nothing. `file` is a folder or a numbered pattern of images, a Y4M file or a trace, and `rate` how many images a second it has where it does not tell; both can be given with `--recording` and `--rate`",
     ),
+    (
+        "drive",
+        "submersible(max_speed: Velocity, max_climb: Velocity, max_turn: AngularVelocity, thrust: Vector<base_link, Force>, torque: Torque, added_mass: Vector<base_link, Mass>, inertia: Inertia, linear_drag: Vector<base_link, Quantity<kg/s>>, quadratic_drag: Vector<base_link, Quantity<kg/m>>, linear_turn_drag: Quantity<m2*kg/s/rad> = 0, quadratic_turn_drag: Quantity<m2*kg/rad2> = 0, thruster_lag: Duration = 100 ms, velocity_lag: Duration = 500 ms, turn_lag: Duration = 300 ms)",
+        "Thrusters under water, neutrally buoyant and held level. Vectors are ahead, left, up; thrust and torque are the most that the thrusters give, each with a lag of first order, and those for ahead, left and turn share what they have. The mass is that of the body and the water it drags along; inertia is about z, that of the water included; drag counts against the water. An autopilot holds the commanded speed over the ground with the time constants, and the depth; without power it drifts with the current",
+    ),
     ("cruise", "speed(of: Velocity)", "How fast the robot usually goes: `robot.cruise_speed`"),
     (
         "sensor",
@@ -66,8 +71,8 @@ const TABLE: &[(&str, &str, &str)] = &[
     ),
     (
         "sensor",
-        "flow_odometry(period: Duration, latency: Duration = 0 s, speed_noise: Distribution<Velocity> = 0, scale_error: Distribution<Number> = 0, turn_noise: Distribution<AngularVelocity> = 0) -> Odometry",
-        "Pose in odom and twist, integrated from the speed over the ground that a camera looking down and a gyroscope tell; starts at the origin. The noise is drawn for every reading, the error of the scale once a run",
+        "flow_odometry(period: Duration, latency: Duration = 0 s, speed_noise: Distribution<Velocity> = 0, scale_error: Distribution<Number> = 0, turn_noise: Distribution<AngularVelocity> = 0, turn_bias: Distribution<AngularVelocity> = 0) -> Odometry",
+        "Pose in odom and twist, integrated from the speed over the ground, as a camera that looks down or a Doppler velocity log tells it, and a gyroscope; starts at the origin. The noise is drawn for every reading, the error of the scale and the bias of the gyroscope once a run",
     ),
     (
         "sensor",
@@ -150,13 +155,13 @@ const TABLE: &[(&str, &str, &str)] = &[
         "What a full battery holds, what a metre of way takes and what a second takes; an empty one moves no robot. Without `power` a robot never tires",
     ),
     ("safe", "stop()", "Stand still; always possible"),
-    ("safe", "hover()", "Stay where it is, in the air"),
+    ("safe", "hover()", "Stay where it is, in the air or in the water"),
     ("safe", "land()", "Come down where it is"),
     ("prepare", "stand()", "Nothing to prepare"),
     (
         "prepare",
         "take_off(height: Length)",
-        "Climb to a height over the start; commands count from then on. What flies needs it",
+        "Climb to a height over the start; commands count from then on. What leaves the ground needs it",
     ),
     ("finish", "stop()", "Stand still"),
     ("finish", "land()", "Come down where it is"),
@@ -170,6 +175,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "light",
         "lamp(ambient: Number = 0.45, strength: Number = 0.55, azimuth: Heading<map> = 1, elevation: Angle = 0.9, gain: Number = 1)",
         "What cameras see by: the share of its colour that every face shows, what a face turned at the lamp shows in addition, where the lamp stands, and a factor for all of it",
+    ),
+    (
+        "current",
+        "steady(velocity: Vector<map, Velocity>)",
+        "The water moves, everywhere and always with the same velocity, which is level. It carries what goes under water; what rolls, walks or flies does not notice it",
     ),
     (
         "wall",

@@ -8,9 +8,11 @@ use soifra_graph::{Keep, Span};
 pub struct Mission {
     /// Name.
     pub name: Ident,
+    /// What it extends.
+    pub extends: Option<Ident>,
     /// Title.
     pub title: Option<String>,
-    /// Members in order.
+    /// Members in order; once it is derived, those of what it extends too.
     pub members: Vec<MissionMember>,
 }
 

@@ -104,33 +104,39 @@ fn cruises(a: &Agent, r: &RobotGroup, p: &Platform, out: &mut Vec<Diagnostic>) {
     }
 }
 
-/// What only flies, or never does: roles and models.
-const IN_THE_AIR: &[(&str, &str)] =
+/// Drives that leave the ground, and what they do.
+const LEAVES_GROUND: &[(&str, &str)] = &[("quadrotor", "flies"), ("submersible", "swims")];
+
+/// What is done off the ground: roles and models.
+const OFF_THE_GROUND: &[(&str, &str)] =
     &[("prepare", "take_off"), ("safe", "hover"), ("safe", "land"), ("finish", "land")];
 
-/// A drive that flies takes off; others do not. What was recorded may have flown.
+/// A drive that leaves the ground takes off; others do not. What was recorded may have left it.
 fn airborne(p: &Platform, out: &mut Vec<Diagnostic>) {
     let Some(drive) = p.of_role("drive").next() else { return };
     if *drive.model == *RECORDED {
         return;
     }
-    let flies = *drive.model == *"quadrotor";
-    if flies && !p.of_role("prepare").any(|c| *c.model == *"take_off") {
+    let leaves = LEAVES_GROUND.iter().find(|(model, _)| *drive.model == **model);
+    if let Some((_, what)) = leaves
+        && !p.of_role("prepare").any(|c| *c.model == *"take_off")
+    {
         out.push(
             Diagnostic::error(code::INCOMPLETE_PLATFORM, format!("`{}` never takes off", p.name))
-                .at(drive.at, "flies")
+                .at(drive.at, *what)
                 .hint("add `prepare = take_off(height: 1 m)`"),
         );
     }
-    for c in p.components.iter().filter(|c| !flies && IN_THE_AIR.contains(&(&*c.role, &*c.model))) {
+    let grounded = leaves.is_none();
+    for c in p.components.iter().filter(|c| grounded && OFF_THE_GROUND.contains(&(&*c.role, &*c.model))) {
         out.push(
             Diagnostic::error(
                 code::INCOMPLETE_PLATFORM,
-                format!("`{}` of `{}` needs wings", c.model, p.name),
+                format!("`{}` of `{}` needs wings or fins", c.model, p.name),
             )
-            .at(c.at, "only what flies can do this")
+            .at(c.at, "only what flies or swims can do this")
             .at(drive.at, format!("this drive is {}", drive.model))
-            .hint("write `stop()`, or take a drive that flies"),
+            .hint("write `stop()`, or take a drive that flies or swims"),
         );
     }
 }

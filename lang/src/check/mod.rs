@@ -20,6 +20,7 @@ mod knowledge;
 mod lists;
 mod materials;
 mod placement;
+mod possible;
 mod quantifiers;
 mod ranges;
 mod reachability;

@@ -1,79 +1,15 @@
 //! Are the sizes, chances and durations of worlds, platforms, topics and robots possible at all?
 
-use super::constants::Constants;
+use super::{
+    constants::Constants,
+    possible::{Must, RULES},
+};
 use crate::code;
 use soifra_graph::{
     Component, Diagnostic, Distribution, ExpectKind, Expr, Graph, PlanKind, Span, Strategy, Trigger, Type,
     UnitKind, Value,
 };
-use std::f64::consts::{PI, TAU};
 
-/// What an argument must be.
-#[derive(Clone, Copy)]
-enum Must {
-    BePositive,
-    BeAPeriod,
-    NotBeNegative,
-    BeAChance,
-    AscendWithinATurn,
-    AscendFromZero,
-    BeAtMostHalfATurn,
-    BeAColour,
-    HaveTwoPoints,
-}
-
-/// Arguments by name; a name means the same thing in every model.
-const RULES: &[(&str, Must)] = &[
-    ("beams", Must::BePositive),
-    ("attitude_lag", Must::BePositive),
-    ("bearings", Must::BePositive),
-    ("chance", Must::BeAChance),
-    ("color", Must::BeAColour),
-    ("cone", Must::BeAtMostHalfATurn),
-    ("delay", Must::NotBeNegative),
-    ("drag", Must::NotBeNegative),
-    ("duration", Must::BeAPeriod),
-    ("false_alarm", Must::BeAChance),
-    ("ambient", Must::NotBeNegative),
-    ("field", Must::AscendWithinATurn),
-    ("field_of_view", Must::BeAtMostHalfATurn),
-    ("gain", Must::NotBeNegative),
-    ("height", Must::BePositive),
-    ("from", Must::NotBeNegative),
-    ("keep_out", Must::NotBeNegative),
-    ("lag", Must::NotBeNegative),
-    ("latency", Must::NotBeNegative),
-    ("lifetime", Must::BePositive),
-    ("loss", Must::BeAChance),
-    ("mass", Must::BePositive),
-    ("max_climb", Must::BePositive),
-    ("max_speed", Must::BePositive),
-    ("max_tilt", Must::BePositive),
-    ("max_turn", Must::BePositive),
-    ("path", Must::HaveTwoPoints),
-    ("period", Must::BeAPeriod),
-    ("phase", Must::BeAChance),
-    ("pulse", Must::BePositive),
-    ("radius", Must::BePositive),
-    ("range", Must::AscendFromZero),
-    ("rate", Must::BePositive),
-    ("reflectance", Must::BeAChance),
-    ("repeat", Must::BePositive),
-    ("size", Must::BePositive),
-    ("speed", Must::NotBeNegative),
-    ("strength", Must::NotBeNegative),
-    ("thickness", Must::BePositive),
-    ("turn_lag", Must::NotBeNegative),
-    ("turn_period", Must::BeAPeriod),
-    ("velocity_lag", Must::BePositive),
-    ("wheel_acceleration", Must::BePositive),
-    ("wheel_base", Must::BePositive),
-    ("wheel_radius", Must::BePositive),
-    ("width", Must::BePositive),
-];
-
-/// The shortest period, in seconds.
-const SHORTEST: f64 = 1e-6;
 /// Most of one array that are looked at one by one.
 const MOST: usize = 256;
 /// Most robots, or things of one declaration.
@@ -120,6 +56,7 @@ impl Ranges<'_> {
             }
         }
         self.corners(part, name);
+        self.lags(part);
     }
 
     /// Whether an argument is possible; reports it when not.
@@ -171,6 +108,26 @@ impl Ranges<'_> {
         };
         self.out.push(Diagnostic::error(code::RANGE, title).at(e.span, why).hint(hint));
         false
+    }
+
+    /// An autopilot that would be quicker than the thrusters it has.
+    fn lags(&mut self, part: &Component) {
+        let lag = |n: &str| part.args.iter().find(|(a, _)| &**a == n).map(|(_, e)| e);
+        let Some(thrusters) = lag("thruster_lag") else { return };
+        let Some(least) = self.known.number(thrusters, 0) else { return };
+        for name in ["velocity_lag", "turn_lag"] {
+            let Some((e, seconds)) = lag(name).and_then(|e| Some((e, self.known.number(e, 0)?))) else {
+                continue;
+            };
+            if seconds > 0.0 && seconds < least {
+                self.out.push(
+                    Diagnostic::error(code::RANGE, format!("`{name}` is shorter than `thruster_lag`"))
+                        .at(e.span, format!("{seconds} s"))
+                        .at(thrusters.span, format!("{least} s"))
+                        .hint("an autopilot cannot be quicker than its thrusters: write a longer one"),
+                );
+            }
+        }
     }
 
     /// Corners and ends that leave nothing between them.
@@ -286,67 +243,6 @@ pub fn wrong_period(seconds: &Value, at: Span, what: &str) -> Option<Diagnostic>
     let (why, seen) = Must::BeAPeriod.complaint(seconds, "s")?;
     let d = Diagnostic::error(code::RANGE, format!("{what} {why}")).at(at, seen);
     Some(d.hint(Must::BeAPeriod.hint()))
-}
-
-impl Must {
-    /// What is wrong with a value in SI unit `unit`: the end of a title, and a label.
-    fn complaint(self, v: &Value, unit: &str) -> Option<(&'static str, String)> {
-        let shown = |x: f64| format!("{x} {unit}").trim_end().to_string();
-        let number = |wrong: fn(f64) -> bool, why| v.number().filter(|x| wrong(*x)).map(|x| (why, shown(x)));
-        match (self, v) {
-            (Must::BePositive, Value::Vector(v)) => {
-                v.iter().find(|x| **x <= 0.0).map(|x| ("must be above 0 in every part", shown(*x)))
-            }
-            (Must::BePositive, Value::List(items)) => {
-                items.is_empty().then(|| ("cannot be empty", "no items".to_string()))
-            }
-            (Must::BePositive, _) => number(|x| x <= 0.0, "must be above 0"),
-            (Must::BeAPeriod, _) => number(|x| x < SHORTEST, "must be at least 1 us"),
-            (Must::NotBeNegative, _) => number(|x| x < 0.0, "cannot be below 0"),
-            (Must::BeAChance, _) => number(|x| !(0.0..=1.0).contains(&x), "must be from 0 to 1"),
-            (Must::AscendWithinATurn | Must::AscendFromZero, Value::Range(a, b)) if a >= b => {
-                Some(("runs backwards", format!("from {} to {}", shown(*a), shown(*b))))
-            }
-            // A hair more: the ends are rounded.
-            (Must::AscendWithinATurn, Value::Range(a, b)) if b - a > TAU * (1.0 + 1e-12) => Some((
-                "is wider than a turn",
-                format!("{} deg wide", ((b - a).to_degrees() * 1e6).round() / 1e6),
-            )),
-            (Must::BeAtMostHalfATurn, _) => {
-                number(|x| x <= 0.0 || x > PI, "must be above 0 and at most 180 deg")
-            }
-            (Must::AscendFromZero, Value::Range(a, _)) if *a < 0.0 => {
-                Some(("cannot begin below 0", format!("from {}", shown(*a))))
-            }
-            (Must::AscendFromZero, _) => number(|x| x <= 0.0, "must be above 0"),
-            (Must::BeAColour, Value::Text(t)) => {
-                let hex =
-                    t.strip_prefix('#').filter(|h| h.len() == 6 && h.bytes().all(|b| b.is_ascii_hexdigit()));
-                hex.is_none().then(|| ("is no colour", "not six digits after a `#`".to_string()))
-            }
-            (Must::HaveTwoPoints, Value::List(items)) if items.len() < 2 => {
-                let n = if items.len() == 1 { "one point" } else { "no point" };
-                Some(("leads nowhere", n.to_string()))
-            }
-            _ => None,
-        }
-    }
-
-    fn hint(self) -> &'static str {
-        match self {
-            Must::BePositive => "write a value above 0",
-            Must::BeAPeriod => "write a longer one: what happens more often never lets the time go on",
-            Must::NotBeNegative => "write 0 or more",
-            Must::BeAChance => "write a value from 0 to 1, or from 0 % to 100 %",
-            Must::AscendWithinATurn => "write the smaller end first, and ends that lie at most 360 deg apart",
-            Must::BeAtMostHalfATurn => "write an angle up to 180 deg",
-            Must::AscendFromZero => "write the smaller end first; ranges begin at 0 or above",
-            Must::BeAColour => "write it as `#rrggbb`, for example `#e8e4da`",
-            Must::HaveTwoPoints => {
-                "write where it turns round: `path: [(0 m, 0 m), (1 m, 0 m)]`; what stands still is an `obstacle`"
-            }
-        }
-    }
 }
 
 /// The SI unit of a quantity, or of what it is made of.

@@ -4,6 +4,7 @@ use crate::{
     ast::{Arg, Entry, Expr as Written, Ident, Profile},
     code,
     decls::unknown,
+    derived::{chain, same_entry},
     typed::{Body, Checker, Place},
 };
 use soifra_graph::{Component, Diagnostic, Name, Span, Type, component};
@@ -12,53 +13,22 @@ impl<'a> Checker<'a> {
     /// The entries of a profile with those of what it extends: own entries replace inherited ones of the
     /// same role and name.
     pub fn extended(&mut self, profile: &'a Profile, worlds: bool) -> Vec<&'a Entry> {
-        let mut chain = vec![profile];
-        let mut at = profile;
-        while let Some(base) = &at.extends {
-            let table = if worlds { &self.decls.worlds } else { &self.decls.platforms };
-            let Some(next) = table.get(&base.name).copied() else {
-                let what = if worlds { "world" } else { "platform" };
-                let d = unknown(
-                    if worlds { code::UNKNOWN_NAME } else { code::UNKNOWN_PLATFORM },
-                    what,
-                    &base.name,
-                    base.span,
-                    table.keys().map(|k| &**k),
-                );
-                self.report(d);
-                break;
-            };
-            if chain.len() > 64 {
-                self.report(
-                    Diagnostic::error(
-                        code::NESTING,
-                        format!("`{}` extends more than 64 others", profile.name.name),
-                    )
-                    .at(profile.name.span, "too long a chain")
-                    .hint("extend fewer levels"),
-                );
-                break;
-            }
-            if chain.iter().any(|p| p.name.name == next.name.name) {
-                self.report(
-                    Diagnostic::error(code::RECURSION, format!("`{}` extends itself", next.name.name))
-                        .at(base.span, "in a ring")
-                        .hint("one of them must stand by itself"),
-                );
-                break;
-            }
-            chain.push(next);
-            at = next;
+        let table = if worlds { &self.decls.worlds } else { &self.decls.platforms };
+        let (code, what) =
+            if worlds { (code::UNKNOWN_NAME, "world") } else { (code::UNKNOWN_PLATFORM, "platform") };
+        let (chain, wrong) = chain(
+            profile,
+            |name| table.get(name).copied(),
+            |base| unknown(code, what, &base.name, base.span, table.keys().map(|k| &**k)),
+        );
+        if let Some(d) = wrong {
+            self.report(d);
         }
         let mut out: Vec<&Entry> = Vec::new();
         for p in chain.iter().rev() {
             let mut own: Vec<&Entry> = Vec::new();
             for e in &p.entries {
-                let same = |o: &&&Entry| {
-                    o.role.name == e.role.name
-                        && o.name.as_ref().map(|n| &n.name) == e.name.as_ref().map(|n| &n.name)
-                        && &*e.role.name != "safe"
-                };
+                let same = |o: &&&Entry| same_entry(o, e) && &*e.role.name != "safe";
                 if let Some(first) = own.iter().find(same) {
                     self.report(
                         Diagnostic::error(code::DUPLICATE, "this is declared twice")
@@ -75,11 +45,7 @@ impl<'a> Checker<'a> {
                 out.retain(|o| &*o.role.name != "safe");
             }
             for e in own {
-                match out.iter_mut().find(|o| {
-                    o.role.name == e.role.name
-                        && o.name.as_ref().map(|n| &n.name) == e.name.as_ref().map(|n| &n.name)
-                        && &*e.role.name != "safe"
-                }) {
+                match out.iter_mut().find(|o| same_entry(o, e) && &*e.role.name != "safe") {
                     Some(slot) => *slot = e,
                     None => out.push(e),
                 }

@@ -9,7 +9,7 @@ use crate::{
 };
 use soifra_graph::{
     Component, Diagnostic, Expr, Graph, Metric, Name, Param, RobotGroup, SCHEMA, Span, Type, Value,
-    component::{FAULT_ROLES, WORLD_ROLES},
+    component::{FAULT_ROLES, NAMED_ROLES, WORLD_ROLES},
     typing,
 };
 use std::collections::BTreeMap;
@@ -335,6 +335,7 @@ impl<'a> Checker<'a> {
             }
         }
         self.distinct(entries.iter().filter_map(|e| e.name.as_ref()));
+        self.alone(&entries);
         let mut out = Vec::new();
         for e in entries {
             match (self.component(e, &[WORLD_ROLES, FAULT_ROLES].concat()), &e.name) {
@@ -344,6 +345,27 @@ impl<'a> Checker<'a> {
             }
         }
         out
+    }
+}
+
+impl Checker<'_> {
+    /// Entries without a name are there once: a mission that takes a world cannot have a second light or current.
+    fn alone(&mut self, entries: &[&ast::Entry]) {
+        let nameless = |e: &&&ast::Entry| {
+            let role = &*e.role.name;
+            WORLD_ROLES.contains(&role) && !NAMED_ROLES.contains(&role)
+        };
+        let mut seen: BTreeMap<&str, Span> = BTreeMap::new();
+        for e in entries.iter().filter(nameless) {
+            let Some(first) = seen.insert(&e.role.name, e.span) else { continue };
+            let title = format!("the world of a mission has one `{}`", e.role.name);
+            self.report(
+                Diagnostic::error(code::DUPLICATE, title)
+                    .at(e.span, "the second")
+                    .at(first, "the first")
+                    .hint("remove one, or write `world … extends …`, whose entries take the place of those of the other"),
+            );
+        }
     }
 }
 

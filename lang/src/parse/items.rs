@@ -190,6 +190,7 @@ impl Builder {
     fn mission(&mut self, p: P<'_>) -> Mission {
         let mut c = Cursor::new(p);
         let name = self.ident(&mut c);
+        let extends = c.take(Rule::ident).map(|p| self.name(&p));
         let title = c.take(Rule::string).map(|p| unquote(p.as_str()));
         let mut members = Vec::new();
         while let Some(p) = c.any() {
@@ -210,7 +211,7 @@ impl Builder {
                 _ => continue,
             });
         }
-        Mission { name, title, members }
+        Mission { name, extends, title, members }
     }
 
     fn robot(&mut self, p: P<'_>) -> Robot {

@@ -110,7 +110,7 @@ impl Simulator {
         let studio = Studio::of(scene, &population.bodies)?;
         let twists = |i: &u32| {
             let platform = platforms[*i as usize] as usize;
-            actuators[platform].contains(&Actuator::Twist) || chassis[platform].drive.flies()
+            actuators[platform].contains(&Actuator::Twist) || chassis[platform].drive.leaves_ground()
         };
         let mut simulator = Simulator {
             now: 0,
@@ -134,7 +134,7 @@ impl Simulator {
         Ok(simulator)
     }
 
-    /// What flies takes off at once.
+    /// What leaves the ground takes off at once.
     fn prepare(&mut self) {
         let checked = self.collisions.checked();
         for (drive, body) in self.drives.iter_mut().zip(&mut self.bodies) {
@@ -240,8 +240,12 @@ impl Simulator {
 
     fn stop(&mut self, robot: u32) {
         let (now, checked) = (self.now, self.collisions.checked());
+        let empty = self.is_empty(robot);
         if let Some((drive, body)) = self.robot(robot) {
-            drive.stop(body, now, checked);
+            match empty {
+                true => drive.power_off(body, now, checked),
+                false => drive.stop(body, now, checked),
+            }
             self.planned = now;
         }
     }

@@ -4,7 +4,7 @@ use super::{
     Actuator,
     args::Args,
     body::{Body, Place},
-    geometry::{Aabb, Shape, norm, sub},
+    geometry::{Aabb, Shape, Vec2, norm, sub},
     index::Grid,
     motion::{self, Drive, DriveModel},
     movers::{Mover, ToAndFro, Wanderer},
@@ -70,6 +70,9 @@ pub struct Population {
 
 const WORLD: &str = "the world";
 
+/// Water that is faster (m/s) than any tidal stream is a mistake; the hydrodynamics are not made for it.
+const SWIFTEST: f64 = 20.0;
+
 /// Walls and obstacles.
 pub fn things(scene: &Scene) -> Result<Things, String> {
     let reflectances = reflectances(scene)?;
@@ -126,6 +129,24 @@ pub fn bounds(scene: &Scene) -> Result<Option<Aabb>, String> {
     Ok(Some(Aabb { low: [low[0], low[1]], high: [high[0], high[1]] }))
 }
 
+/// Velocity of the water over the ground (m/s, in map); none without a current.
+fn current(scene: &Scene) -> Result<Vec2, String> {
+    let mut all = scene.world.iter().filter(|p| &*p.role == "current");
+    let Some(part) = all.next() else { return Ok([0.0; 2]) };
+    let args = Args { part, of: WORLD };
+    let [x, y, z] = args.vector("velocity")?;
+    if z != 0.0 {
+        return Err(args.wrong("`velocity` is not level"));
+    }
+    if norm([x, y]) > SWIFTEST {
+        return Err(args.wrong(format_args!("`velocity` is above {SWIFTEST} m/s")));
+    }
+    match all.next() {
+        Some(_) => Err(args.wrong("there is a second one")),
+        None => Ok([x, y]),
+    }
+}
+
 /// The body and drive of a platform.
 pub fn chassis(platform: &PlatformScene) -> Result<Chassis, String> {
     let of = format!("platform `{}`", platform.name);
@@ -138,7 +159,7 @@ pub fn chassis(platform: &PlatformScene) -> Result<Chassis, String> {
     }
     let take_off = platform.of_role("prepare").find(|p| &*p.model == "take_off");
     let height = take_off.map(|part| Args { part, of: &of }.positive("height")).transpose()?;
-    let drive = motion::build(Args { part: one("drive")?, of: &of }, height)?;
+    let drive = motion::build(Args { part: one("drive")?, of: &of }, args.positive("mass")?, height)?;
     let battery = Battery::of(platform)?;
     Ok(Chassis { radius: args.positive("radius")?, height: args.positive("height")?, drive, battery })
 }
@@ -152,9 +173,9 @@ pub fn actuators(scene: &Scene, chassis: &[Chassis]) -> Result<Vec<Vec<Actuator>
             match (&*part.role, &*part.model) {
                 ("safe" | "finish", "stop") | ("prepare", "stand") => {}
                 ("safe", "hover" | "land") | ("prepare", "take_off") | ("finish", "land")
-                    if chassis.drive.flies() => {}
+                    if chassis.drive.leaves_ground() => {}
                 ("safe", "hover" | "land") | ("prepare", "take_off") | ("finish", "land") => {
-                    return Err(args.wrong("its drive does not fly"));
+                    return Err(args.wrong("its drive does not leave the ground"));
                 }
                 _ => return Err(args.wrong("the simulator has no such action")),
             }
@@ -201,6 +222,7 @@ pub fn endings(platforms: &[PlatformScene]) -> Vec<Endings> {
 /// Robots and movers.
 pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, String> {
     let mut all = Population { bodies: Vec::new(), drives: Vec::new(), movers: Vec::new() };
+    let current = current(scene)?;
     for robot in scene.bodies() {
         let c = chassis
             .get(robot.platform as usize)
@@ -208,8 +230,8 @@ pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, Stri
         let (place, z) = start(robot)?;
         let span = [z, z + c.height];
         let body = Body::new(robot.name.clone(), c.radius, span, REFLECTANCE, place);
-        all.bodies.push(if c.drive.flies() { body.flying() } else { body });
-        all.drives.push(c.drive.drive(scene.seed, &format!("{}/drive", robot.name)));
+        all.bodies.push(if c.drive.leaves_ground() { body.flying() } else { body });
+        all.drives.push(c.drive.drive(scene.seed, &format!("{}/drive", robot.name), current));
     }
     let reflectances = reflectances(scene)?;
     let bounds = bounds(scene)?;

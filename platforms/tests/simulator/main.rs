@@ -11,3 +11,4 @@ mod scenes;
 mod schedule;
 mod sensors;
 mod swarm;
+mod water;

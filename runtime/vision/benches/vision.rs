@@ -6,9 +6,8 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::Criterion;
-use opencv::core::{self, Mat, Point2f, Scalar, Size, TermCriteria, ToInputArray, Vec4i, Vector};
-use opencv::{imgproc, video};
-use soifra_vision::contours::{Contours, Thresholds, thresholds, verticals};
+use opencv::core::{Mat, Point2f, Vector};
+use soifra_vision::contours::{Thresholds, thresholds, verticals};
 use soifra_vision::follow::Moment;
 use soifra_vision::look::{Looking, Memory, look, look_at, nearest};
 use soifra_vision::points;
@@ -16,6 +15,10 @@ use soifra_vision::{Gray, ImageView, Lens};
 
 #[path = "../tests/vision/scene.rs"]
 mod scene;
+
+mod bare;
+
+use bare::{detect, flow};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
@@ -47,65 +50,6 @@ fn frames(lens: &Lens) -> Vec<Vec<u8>> {
 
 fn view(rgb: &[u8]) -> ImageView<'_> {
     ImageView::new(WIDTH, HEIGHT, 3, rgb).expect("a frame")
-}
-
-/// The bare calls of the detection: Canny with the thresholds that the service uses, Hough.
-fn detect(gray: &impl ToInputArray, (low, high): (f64, f64), how: &Contours) -> Vector<Vec4i> {
-    let (mut across, mut contours) = (Mat::default(), Mat::default());
-    let border = core::BORDER_REPLICATE;
-    imgproc::sobel(gray, &mut across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border).expect("sobel");
-    let (rows, columns) = (HEIGHT as i32, WIDTH as i32);
-    let along =
-        Mat::new_rows_cols_with_default(rows, columns, core::CV_16S, Scalar::all(0.0)).expect("zeros");
-    imgproc::canny_derivative(&across, &along, &mut contours, low, high, false).expect("canny");
-    let mut lines = Vector::new();
-    let step = std::f64::consts::PI / 180.0;
-    imgproc::hough_lines_p(&contours, &mut lines, 1.0, step, how.votes, how.shortest, how.gap)
-        .expect("hough");
-    lines
-}
-
-/// The bare calls of the flow: there and back.
-fn flow(
-    from: &impl ToInputArray,
-    to: &impl ToInputArray,
-    start: &Vector<Point2f>,
-    how: &points::Following,
-) -> Vector<Point2f> {
-    let (mut there, mut back) = (Vector::<Point2f>::new(), Vector::<Point2f>::new());
-    let (mut found, mut errors) = (Vector::<u8>::new(), Vector::<f32>::new());
-    let size = Size::new(how.window, how.window);
-    let stop = TermCriteria::new(3, 20, 0.005).expect("criteria");
-    let levels = how.levels;
-    video::calc_optical_flow_pyr_lk(
-        from,
-        to,
-        start,
-        &mut there,
-        &mut found,
-        &mut errors,
-        size,
-        levels,
-        stop,
-        0,
-        1e-4,
-    )
-    .expect("flow");
-    video::calc_optical_flow_pyr_lk(
-        to,
-        from,
-        &there,
-        &mut back,
-        &mut found,
-        &mut errors,
-        size,
-        levels,
-        stop,
-        0,
-        1e-4,
-    )
-    .expect("flow back");
-    back
 }
 
 /// The service and the bare calls by turns, so that the machine's moods meet both: the ratio of the medians over
@@ -155,14 +99,7 @@ fn main() {
         .map(|m| m.points.iter().map(|p| Point2f::new(p.pixel[0] as f32, p.pixel[1] as f32)).collect())
         .collect();
 
-    let grey = |k: usize| {
-        let source =
-            Mat::new_rows_cols_with_bytes::<opencv::core::Vec3b>(HEIGHT as i32, WIDTH as i32, &frames[k])
-                .expect("rgb");
-        let mut target = Mat::default();
-        imgproc::cvt_color_def(&source, &mut target, imgproc::COLOR_RGB2GRAY).expect("grey");
-        target
-    };
+    let grey = |k: usize| bare::grey(&frames[k], (WIDTH, HEIGHT));
     let none = Vector::<Point2f>::new();
     let mut worst: f64 = 0.0;
     let mut tell = |r: f64| worst = worst.max(r);
@@ -172,7 +109,7 @@ fn main() {
             let _ = black_box(verticals(&grays[k], 0.0, &how.contours));
         },
         |k| {
-            black_box(detect(&mats[k], limits[k], &how.contours));
+            black_box(detect(&mats[k], (WIDTH, HEIGHT), limits[k], &how.contours));
         },
     ));
     tell(ratio(
@@ -182,7 +119,7 @@ fn main() {
         },
         |k| {
             let gray = grey(k);
-            black_box(detect(&gray, limits[k], &how.contours));
+            black_box(detect(&gray, (WIDTH, HEIGHT), limits[k], &how.contours));
             if !starts[k].is_empty() {
                 black_box(flow(&mats[k - 1], &gray, &starts[k], &how.points));
             }
@@ -203,7 +140,7 @@ fn main() {
             let _ = black_box(nearest(&grays[k - 1], &grays[k], 0.0, &lens, &how.contours, &how.points));
         },
         |k| {
-            black_box(detect(&mats[k], limits[k], &how.contours));
+            black_box(detect(&mats[k], (WIDTH, HEIGHT), limits[k], &how.contours));
             if !published[k].is_empty() {
                 black_box(flow(&mats[k], &mats[k - 1], &published[k], &how.points));
             }

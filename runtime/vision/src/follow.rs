@@ -7,6 +7,7 @@ use crate::attitude::{Attitude, Rates, wrap};
 use crate::edge::{Edge, Upright, seen, upright};
 use crate::image::Gray;
 use crate::lens::Lens;
+use crate::reckoning::relative;
 use crate::refine::{Refinement, refine};
 use crate::segment::Segment;
 
@@ -60,9 +61,8 @@ impl Moment {
 
     /// A former place as seen from now. The pace must not be zero.
     pub fn since(&self, place: [f64; 2]) -> Advance {
-        let (s, c) = libm::sincos(self.course);
-        let (x, y) = (place[0] - self.place[0], place[1] - self.place[1]);
-        Advance { time: (x * c + y * s) / self.pace, aside: (y * c - x * s) / self.pace }
+        let [ahead, left] = relative(place, self.place, self.course);
+        Advance { time: ahead / self.pace, aside: left / self.pace }
     }
 }
 

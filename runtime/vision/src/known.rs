@@ -5,7 +5,8 @@
 use crate::course::{Lane, Reach};
 use crate::follow::Moment;
 use crate::lens::Lens;
-use crate::obstacle::{Obstacle, Post};
+use crate::obstacle::Obstacle;
+use crate::reckoning::relative;
 use crate::turning::{Footprint, outline};
 
 /// An obstacle where it was last seen.
@@ -22,6 +23,8 @@ pub struct Known {
     pub ids: [u32; 2],
     /// Which of the obstacles that are seen now it is.
     pub which: Option<usize>,
+    /// How far ahead it is, as known best.
+    pub range: Range,
     /// How often it was seen.
     pub sightings: u32,
     /// When it was last seen, s.
@@ -29,6 +32,35 @@ pub struct Known {
     /// For how long it should have been seen since and was not, s.
     pub missed: f64,
 }
+
+/// How far ahead an obstacle was when that was known best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Along the direction of motion then, metres.
+    pub ahead: f64,
+    /// Its standard deviation then, metres.
+    pub sigma: f64,
+    /// Where the camera was then, metres in the level frame.
+    pub place: [f64; 2],
+    /// The direction of motion then, radians.
+    pub course: f64,
+}
+
+impl Range {
+    /// As it is now: metres ahead and their standard deviation, which grows with the way since. Nothing after a turn: then it
+    /// is another side that is met.
+    fn at(&self, now: &Moment) -> Option<[f64; 2]> {
+        let [way, _] = relative(now.place, self.place, self.course);
+        let turned = crate::attitude::wrap(now.course - self.course).abs();
+        (turned < TURNED).then(|| [self.ahead - way, libm::hypot(self.sigma, AGEING * way)])
+    }
+}
+
+/// After a turn by so much a range does not count any more, radians.
+const TURNED: f64 = 0.15;
+
+/// By how much a range is less certain for each metre gone since, metres.
+const AGEING: f64 = 0.03;
 
 /// The least depth of an obstacle, metres.
 const DEPTH: f64 = 1.0;
@@ -59,6 +91,14 @@ pub struct Remembering {
     pub doubtful: f64,
     /// Farthest edge by itself that is remembered, metres.
     pub beside: f64,
+    /// An edge by itself that is nearer than this may not show any more, metres.
+    pub hidden: f64,
+    /// An edge by itself is believed when there is another one so near, metres.
+    pub company: f64,
+    /// Most edges by themselves remembered.
+    pub most_posts: usize,
+    /// For how long the time to contact with what is not seen is told, s.
+    pub recent: f64,
     /// Most obstacles remembered.
     pub most: usize,
 }
@@ -66,33 +106,35 @@ pub struct Remembering {
 impl Default for Remembering {
     fn default() -> Self {
         Self {
-            fewest: 3,
-            doubt: 1.5,
-            near: 2.5,
+            fewest: 6,
+            doubt: 0.75,
+            near: 1.2,
             farthest: 6.0,
             same: 0.3,
             behind: 1.0,
             uncertainty: 0.15,
             widest: 4.0,
             doubtful: 0.08,
-            beside: 3.0,
+            beside: 6.0,
+            hidden: 1.0,
+            company: 0.4,
+            most_posts: 128,
+            recent: 0.3,
             most: 16,
         }
     }
 }
 
-/// What is known after a look of a robot of a speed (m/s) through a lens, images `width` pixels wide: what is seen now, and
-/// what was known and is not in view.
+/// What is known after a look through a lens, images `width` pixels wide, `interval` seconds after the last one: what is seen
+/// now, and what was known and is not in view. A robot that hardly moves measures nothing, and so misses nothing.
 pub fn remember(
     before: &[Known],
     seen: &[Obstacle],
     now: &Moment,
-    speed: f64,
+    (interval, moves): (f64, bool),
     (lens, width): (&Lens, usize),
     how: &Remembering,
 ) -> Vec<Known> {
-    // Who hardly moves measures nothing, and so misses nothing.
-    let moves = speed > 0.5 * now.pace;
     let mut out: Vec<Known> = seen
         .iter()
         .enumerate()
@@ -108,30 +150,15 @@ pub fn remember(
             continue;
         }
         let mut old = Known { which: None, ..*old };
-        let interval = now.time - old.seen.max(now.time - 1.0);
         // What is near may hide its edges; forgetting it would be worse than believing in what is not there.
         if moves && ahead(&old, now)[0] > how.near && in_view(&old, now, lens, width) {
-            old.missed += interval.clamp(0.0, 0.1);
+            old.missed += interval;
         }
         if old.is_sure(how) && old.missed < how.doubt && ahead(&old, now)[1] > -how.behind {
             out.push(old);
         }
     }
     out.truncate(how.most);
-    out
-}
-
-/// Edges by themselves that are known after a look: those placed now, and those known before that are not far behind.
-pub fn remember_posts(before: &[Post], now_placed: Vec<Post>, now: &Moment, how: &Remembering) -> Vec<Post> {
-    let near = |p: &Post| {
-        let [ahead, left] = from(p.place, now);
-        ahead > -how.behind && libm::hypot(ahead, left) < how.beside
-    };
-    let mut out = now_placed;
-    let old: Vec<Post> = before.iter().filter(|b| out.iter().all(|p| p.id != b.id)).copied().collect();
-    out.extend(old);
-    out.retain(near);
-    out.truncate(4 * how.most);
     out
 }
 
@@ -147,21 +174,25 @@ fn placed(obstacle: &Obstacle, now: &Moment) -> Option<Known> {
     let left = edge(obstacle.left_tangents.last()?.tangent, near_left);
     let right = edge(obstacle.right_tangents.last()?.tangent, near_right);
     let ids = [obstacle.left_id, obstacle.right_id];
-    let known =
-        Known { left, right, away: [c, s], ids, which: None, sightings: 1, seen: now.time, missed: 0.0 };
+    let [ahead, sigma] = [obstacle.contact.ttc, obstacle.contact.sigma].map(|t| t * now.pace);
+    let range = Range { ahead, sigma, place: now.place, course: now.course };
+    let known = Known {
+        left,
+        right,
+        away: [c, s],
+        ids,
+        which: None,
+        range,
+        sightings: 1,
+        seen: now.time,
+        missed: 0.0,
+    };
     left.iter().chain(&right).all(|v| v.is_finite()).then_some(known)
-}
-
-/// A point as seen from the camera along its way: ahead, to the left.
-fn from(point: [f64; 2], now: &Moment) -> [f64; 2] {
-    let (s, c) = libm::sincos(now.course);
-    let (x, y) = (point[0] - now.place[0], point[1] - now.place[1]);
-    [x * c + y * s, y * c - x * s]
 }
 
 /// How far ahead the nearer and the farther edge are.
 fn ahead(known: &Known, now: &Moment) -> [f64; 2] {
-    let (l, r) = (from(known.left, now)[0], from(known.right, now)[0]);
+    let [l, r] = [known.left, known.right].map(|p| relative(p, now.place, now.course)[0]);
     [l.min(r), l.max(r)]
 }
 
@@ -174,12 +205,15 @@ fn gap(a: &Known, b: &Known) -> f64 {
 
 /// Should both edges be seen, and not at the rim of the image?
 fn in_view(known: &Known, now: &Moment, lens: &Lens, width: usize) -> bool {
-    [known.left, known.right].iter().all(|p| {
-        let (x, y) = (p[0] - now.place[0], p[1] - now.place[1]);
-        let pixel = lens.pixel(now.attitude.body([x, y, 0.0]));
-        let rim = width as f64 * 0.08;
-        pixel.is_some_and(|p| p[0] > rim && p[0] < width as f64 - rim)
-    })
+    [known.left, known.right].iter().all(|p| shows(*p, now, lens, width))
+}
+
+/// Is a place on the floor within the image, and not at its rim?
+pub(crate) fn shows(place: [f64; 2], now: &Moment, lens: &Lens, width: usize) -> bool {
+    let (x, y) = (place[0] - now.place[0], place[1] - now.place[1]);
+    let pixel = lens.pixel(now.attitude.body([x, y, 0.0]));
+    let rim = width as f64 * 0.08;
+    pixel.is_some_and(|p| p[0] > rim && p[0] < width as f64 - rim)
 }
 
 impl Known {
@@ -187,7 +221,7 @@ impl Known {
     /// ever seen to. Nothing when together they would be much wider than either: they are two.
     fn joined(&self, before: &Known, now: &Moment, how: &Remembering) -> Option<Known> {
         let bearing = |p: [f64; 2]| {
-            let [x, y] = from(p, now);
+            let [x, y] = relative(p, now.place, now.course);
             libm::atan2(y, x)
         };
         // The same edge is now known better.
@@ -197,7 +231,10 @@ impl Known {
         let right =
             if farther(1, bearing(self.right) - bearing(before.right)) { before.right } else { self.right };
         let sightings = self.sightings.saturating_add(before.sightings);
-        let joined = Known { left, right, away: before.away, sightings, ..*self };
+        // What was known better before still is, less the way since: a pair that is new or narrow tells little.
+        let better = before.range.at(now).is_some_and(|[_, sigma]| sigma < self.range.sigma);
+        let range = if better { before.range } else { self.range };
+        let joined = Known { left, right, away: before.away, range, sightings, ..*self };
         (joined.width() <= self.width().max(before.width()) + how.same).then_some(joined)
     }
 
@@ -210,15 +247,17 @@ impl Known {
         self.sightings >= how.fewest
     }
 
+    /// Time to contact at the moment's pace, s, when it was seen no longer than `recent` seconds ago.
+    pub fn contact(&self, now: &Moment, recent: f64) -> Option<f64> {
+        let [ahead, _] = self.range.at(now).filter(|_| now.time - self.seen <= recent)?;
+        (ahead > 0.0 && now.pace > 0.0).then(|| ahead / now.pace)
+    }
+
     /// Its corners as seen from the middle of a body at `place` that goes along `course`: metres ahead and to the left.
     pub fn footprint(&self, place: [f64; 2], course: f64) -> Footprint {
         let depth = self.width().max(DEPTH);
         let behind = |p: [f64; 2]| [p[0] + depth * self.away[0], p[1] + depth * self.away[1]];
-        let (s, c) = libm::sincos(course);
-        [self.left, self.right, behind(self.right), behind(self.left)].map(|p| {
-            let (x, y) = (p[0] - place[0], p[1] - place[1]);
-            [x * c + y * s, y * c - x * s]
-        })
+        [self.left, self.right, behind(self.right), behind(self.left)].map(|p| relative(p, place, course))
     }
 
     /// How far ahead of the camera it is met in a lane; nothing when it is not in it.

@@ -11,7 +11,7 @@
 //! | how do they move, which of them are obstacles? | `follow`, `sweep`, `obstacle` |
 //! | how do points on the obstacle move? | `points` |
 //! | how long until contact? | `flow`, `robust`, `expansion` |
-//! | where does it stand once it is out of sight? | `known` |
+//! | where does it stand once it is out of sight? | `known`, `posts` |
 //! | is it in the way, on which side is more room? | `course`, `turning` |
 //! | all of it on a frame | `look` |
 //! | pictures for people | `overlay` |
@@ -24,6 +24,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "a comparison with NaN has to refuse; 2026-11-23")]
 
 pub mod attitude;
+mod consensus;
 pub mod contours;
 pub mod course;
 pub mod edge;
@@ -37,6 +38,7 @@ pub mod look;
 pub mod obstacle;
 pub mod overlay;
 pub mod points;
+pub mod posts;
 pub mod reckoning;
 pub mod rectify;
 pub mod refine;

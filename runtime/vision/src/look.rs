@@ -5,10 +5,11 @@ use crate::course::Lane;
 use crate::edge::{Edge, nearest_pair};
 use crate::follow::{EdgeTrack, Following, Moment, follow};
 use crate::image::{Gray, ImageView};
-use crate::known::{Known, Remembering, remember, remember_posts};
+use crate::known::{Known, Remembering, remember};
 use crate::lens::Lens;
-use crate::obstacle::{Obstacle, Pairing, Post, obstacles, posts};
+use crate::obstacle::{Obstacle, Pairing, obstacles};
 use crate::points::{self, Flow};
+use crate::posts::{Post, posts, remember_posts};
 use crate::refine::{Refinement, refine};
 use crate::robust::PointTrack;
 use crate::why::Why;
@@ -56,6 +57,8 @@ pub struct Seen {
     pub obstacles: Result<Vec<Obstacle>, Why>,
     /// Which of them is the first: the nearest that is known to be in the lane; of none that is known the first in the list.
     pub first: Result<usize, Why>,
+    /// Time to contact with the first one at the moment's pace, s: by its expansion, now or when that was known best.
+    pub contact: Result<f64, Why>,
     /// Flow of points on the first obstacle since the last frame.
     pub flows: Vec<Flow>,
 }
@@ -119,14 +122,17 @@ pub fn look_at(
         None => Vec::new(),
     };
     let obstacles = found.as_deref().unwrap_or_default();
+    let interval = memory.time.map_or(0.0, |last| moment.time - last);
     let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
-        remember(&memory.known, obstacles, moment, *speed, (lens, image.width()), remembering)
+        let doubting = (interval, *speed > 0.5 * moment.pace);
+        remember(&memory.known, obstacles, moment, doubting, (lens, image.width()), remembering)
     });
-    let posts = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, _)| {
+    let posts = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
         let placed = posts(&edges, moment, lens, remembering.doubtful, &how.pairing);
-        remember_posts(&memory.posts, placed, moment, remembering)
+        let doubting = (interval, *speed > 0.5 * moment.pace);
+        remember_posts(&memory.posts, placed, moment, doubting, (lens, image.width()), remembering)
     });
-    let first = first(&found, &known, moment, how);
+    let (first, contact) = first(&found, &known, moment, how);
     if let Some(first) = first.ok().and_then(|i| obstacles.get(i)) {
         followed = points::replenish(followed, &image, &first.left, &first.right, moment, lens, &how.points);
     }
@@ -134,6 +140,7 @@ pub fn look_at(
         edges: edges.iter().filter(|t| t.missed == 0).map(|t| t.edge).collect(),
         obstacles: found,
         first,
+        contact,
         flows: points::flows(&followed),
     };
     let memory =
@@ -141,18 +148,24 @@ pub fn look_at(
     Ok((seen, memory))
 }
 
-/// Which of the obstacles that are seen is the first.
+/// Which of the obstacles that are seen is the first, and the time to contact with it.
 fn first(
     seen: &Result<Vec<Obstacle>, Why>,
     known: &[Known],
     moment: &Moment,
     how: &Looking,
-) -> Result<usize, Why> {
+) -> (Result<usize, Why>, Result<f64, Why>) {
     let sure = known.iter().filter(|k| how.remembering.as_ref().is_some_and(|(r, _)| k.is_sure(r)));
     let met = sure.filter_map(|k| k.met(moment, &how.lane).map(|ahead| (k, ahead)));
     match met.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        Some((known, _)) => known.which.ok_or(Why::NoObstacle),
-        None => seen.as_ref().map(|_| 0).map_err(|why| *why),
+        Some((known, _)) => {
+            let recent = how.remembering.as_ref().map_or(0.0, |(r, _)| r.recent);
+            (known.which.ok_or(Why::NoObstacle), known.contact(moment, recent).ok_or(Why::NoObstacle))
+        }
+        None => match seen {
+            Ok(all) => (Ok(0), all.first().map(|o| o.contact.ttc).ok_or(Why::NoObstacle)),
+            Err(why) => (Err(*why), Err(*why)),
+        },
     }
 }
 

@@ -5,6 +5,7 @@
 //! with nothing farther away seen between them and nothing of the same rate right outside of them. Marks on walls,
 //! floor tiles and the pattern on the obstacle's own face all fail one of these.
 
+use crate::consensus::consensus;
 use crate::course::{Bearing, Reach};
 use crate::edge::Edge;
 use crate::expansion::{Expansion, Width, Window, window};
@@ -198,47 +199,13 @@ pub fn obstacles(
     if chosen.is_empty() {
         return Err(Why::NoObstacle);
     }
-    Ok(chosen.into_iter().map(|p| obstacle(&candidates, p, lens)).collect())
-}
-
-/// An upright edge by itself, placed by its own bearings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Post {
-    /// Number of its track.
-    pub id: u32,
-    /// Where it stands, metres in the level frame.
-    pub place: [f64; 2],
-}
-
-/// The edges that can be placed by themselves as seen from `now`, each to a share `doubt` of its distance: those well off
-/// the course, seen for long. Other than pairs they tell nothing of what is between them.
-pub fn posts(tracks: &[EdgeTrack], now: &Moment, lens: &Lens, doubt: f64, how: &Pairing) -> Vec<Post> {
-    let noise = 0.03 / lens.fx;
-    let (s, c) = libm::sincos(now.course);
-    let placed = |track: &EdgeTrack| {
-        let all = tangents(track, now, how.window.length);
-        let settled = settled(&all, how.fewest, how.shortest, 5.0 * noise);
-        let long = settled.last()?.time - settled.first()?.time >= 2.0 * how.shortest;
-        let sweep = sweep(settled, how.fewest, noise).filter(|s| long && stands(track, s, how))?;
-        let off = libm::hypot(sweep.sigma, how.drift * sweep.bias());
-        if !(sweep.closing > 0.0 && off <= doubt * sweep.closing) {
-            return None;
-        }
-        let z = now.pace / sweep.closing;
-        let x = z * sweep.tangent;
-        let place = [now.place[0] + z * c - x * s, now.place[1] + z * s + x * c];
-        place.iter().all(|v| v.is_finite()).then_some(Post { id: track.id, place })
-    };
-    if !(now.is_finite() && now.pace > 0.0) {
-        return Vec::new();
-    }
-    tracks.iter().filter(|t| t.missed == 0).filter_map(placed).collect()
+    Ok(chosen.into_iter().map(|p| obstacle(&candidates, p, lens, how)).collect())
 }
 
 /// Does the edge stand on the floor and, where lines on the floor seem upright, rise above the horizon? Judged on its
 /// latest sightings, a third must agree: its ends flicker. A line on the floor that is seen elsewhere than straight
 /// ahead points at a place on the horizon that does not move, so that its closing rate gives it away.
-fn stands(track: &EdgeTrack, sweep: &Sweep, how: &Pairing) -> bool {
+pub(crate) fn stands(track: &EdgeTrack, sweep: &Sweep, how: &Pairing) -> bool {
     let latest = &track.sights[track.sights.len().saturating_sub(12)..];
     let above = if sweep.tangent.abs() < how.ahead { how.above } else { f64::NEG_INFINITY };
     let standing = latest
@@ -352,8 +319,17 @@ fn beyond(edge: &Candidate<'_>, next: Option<&Candidate<'_>>, how: &Pairing) -> 
     }
 }
 
-fn obstacle(candidates: &[Candidate<'_>], pair: Pair, lens: &Lens) -> Obstacle {
+fn obstacle(candidates: &[Candidate<'_>], pair: Pair, lens: &Lens, how: &Pairing) -> Obstacle {
     let (l, r) = (&candidates[pair.left], &candidates[pair.right]);
+    let closing = 1.0 / pair.contact.ttc;
+    let on_face = |c: &&Candidate<'_>| {
+        let slack = how.difference * closing + 2.0 * c.sweep.sigma + how.drift * c.sweep.bias().abs();
+        beside(l, c) && beside(r, c) && (c.sweep.closing - closing).abs() <= slack
+    };
+    let within = candidates[pair.left + 1..pair.right].iter().filter(on_face);
+    let edges: Vec<&[Tangent]> =
+        std::iter::once(l).chain(within).chain([r]).map(|c| &c.tangents[..]).collect();
+    let contact = consensus(&edges, pair.contact, &how.window);
     Obstacle {
         left_id: l.track.id,
         right_id: r.track.id,
@@ -363,7 +339,7 @@ fn obstacle(candidates: &[Candidate<'_>], pair: Pair, lens: &Lens) -> Obstacle {
         left_tangents: l.tangents.clone(),
         right_tangents: r.tangents.clone(),
         widths: pair.widths,
-        contact: pair.contact,
+        contact,
         sweeps: [l.sweep, r.sweep],
         beyond: pair.beyond,
     }

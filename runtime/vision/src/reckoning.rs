@@ -22,6 +22,13 @@ pub struct Motion {
     pub speed: f64,
 }
 
+/// A point of the level frame as seen from a body at `place` that goes along `course`: metres ahead, to the left.
+pub fn relative(point: [f64; 2], place: [f64; 2], course: f64) -> [f64; 2] {
+    let (s, c) = libm::sincos(course);
+    let (x, y) = (point[0] - place[0], point[1] - place[1]);
+    [x * c + y * s, y * c - x * s]
+}
+
 /// Slower than this is standing, m/s.
 const STANDING: f64 = 0.02;
 

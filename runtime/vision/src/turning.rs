@@ -23,10 +23,12 @@ pub struct Curve {
     pub radius: f64,
     /// For how far the way after the turn is to be free, metres.
     pub length: f64,
+    /// The least turn, radians.
+    pub least: f64,
 }
 
-/// The smallest turn, radians, to the left (`sign` 1) or to the right (−1), whose curve touches nothing and after
-/// which a lane is free; π when there is none.
+/// The smallest turn of at least `curve.least` radians, to the left (`sign` 1) or to the right (−1), whose curve touches
+/// nothing and after which a lane is free; π when there is none.
 pub fn free_turn(obstacles: &[Footprint], curve: &Curve, sign: f64) -> f64 {
     let outlines: Vec<[f64; 2]> = obstacles.iter().flat_map(outline).collect();
     let need = curve.half_width + curve.margin;
@@ -49,6 +51,9 @@ pub fn free_turn(obstacles: &[Footprint], curve: &Curve, sign: f64) -> f64 {
             if outlines.iter().any(touches) {
                 return std::f64::consts::PI;
             }
+        }
+        if turn < curve.least {
+            continue;
         }
         let ([x, y], (s, c)) = (place(turn), libm::sincos(sign * turn));
         let blocks = |p: &[f64; 2]| {
@@ -84,7 +89,7 @@ mod tests {
 
     #[test]
     fn the_side_with_more_room_takes_the_smaller_turn() {
-        let curve = Curve { half_width: 0.3, margin: 0.1, radius: 0.0, length: 3.0 };
+        let curve = Curve { half_width: 0.3, margin: 0.1, radius: 0.0, length: 3.0, least: 0.0 };
         assert_eq!(free_turn(&[], &curve, 1.0), 0.0);
         assert_eq!(free_turn(&[block(4.0, 0.0)], &curve, 1.0), 0.0, "far away");
         let here = [block(2.0, 0.3)];
@@ -101,7 +106,7 @@ mod tests {
     #[test]
     fn a_wide_curve_hits_what_a_turn_on_the_spot_does_not() {
         let beside = [block(0.6, 1.0), block(2.0, 0.0)];
-        let spot = Curve { half_width: 0.3, margin: 0.1, radius: 0.0, length: 3.0 };
+        let spot = Curve { half_width: 0.3, margin: 0.1, radius: 0.0, length: 3.0, least: 0.0 };
         assert!(free_turn(&beside, &spot, 1.0) < 3.0);
         assert_eq!(free_turn(&beside, &Curve { radius: 1.0, ..spot }, 1.0), std::f64::consts::PI);
     }

@@ -33,7 +33,7 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
         }
         (Function::Diverging, []) => optional(out, sight.diverging().map(|b| [f64::from(u8::from(b))])),
         (Function::NearestPairAhead, []) => optional(out, published::ahead(sight)),
-        (Function::CourseAhead, [radius]) => optional(out, sight.course(*radius)),
+        (Function::CourseAhead, [radius, least]) => optional(out, sight.course(*radius, *least)),
         _ => Err(FaultKind::Malformed),
     }
 }

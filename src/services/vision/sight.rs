@@ -10,8 +10,9 @@ use soifra_vision::{
     follow::Moment,
     known::{self, Remembering},
     look::{Memory, Seen},
-    obstacle::{Obstacle, Post},
-    reckoning::Stop,
+    obstacle::Obstacle,
+    posts::believed,
+    reckoning::{Stop, relative},
     rectify::Rectification,
     robust::{self, Part, Robust},
     sweep::Tangent,
@@ -84,7 +85,7 @@ impl Sight {
 
     /// By expansion.
     pub fn expansion(&self) -> Result<f64, Why> {
-        self.at_speed(self.first()?.contact.ttc)
+        self.at_speed(self.seen.contact?)
     }
 
     /// A time to contact at the moment's pace as one at the robot's speed.
@@ -120,15 +121,20 @@ impl Sight {
     }
 
     /// Collision, distance, clearance, whether the left is freer, turns to a free way to the left and to the right.
-    pub fn course(&self, radius: f64) -> Result<[f64; 6], Why> {
+    pub fn course(&self, radius: f64, least: f64) -> Result<[f64; 6], Why> {
         if self.speed.is_none() {
             return Err(Why::SpeedUnknown);
         }
         let now = &self.moment;
         let place = self.stops.last().map_or(now.place, |s| s.place);
         let need = self.body.half_width + self.body.margin;
-        let known = self.memory.known.iter().filter(|k| k.is_sure(&Remembering::default()));
-        let footprints: Vec<Footprint> = known.map(|k| k.footprint(place, now.course)).collect();
+        let how = Remembering::default();
+        let known = self.memory.known.iter().filter(|k| k.is_sure(&how));
+        let posts = believed(&self.memory.posts, &how);
+        let footprints: Vec<Footprint> = known
+            .map(|k| k.footprint(place, now.course))
+            .chain(posts.iter().map(|p| [relative(*p, place, now.course); 4]))
+            .collect();
         let ahead = self.optics.ahead(self.slip());
         let reach = |f: &Footprint| known::reach(f, need, ahead, now.pace);
         let reaches: Vec<Reach> = footprints.iter().filter_map(reach).collect();
@@ -137,11 +143,8 @@ impl Sight {
         }
         let c = course::course(&reaches, &self.body)?;
         let distance = reaches.get(c.nearest).map_or(0.0, |r| r.ttc * now.pace + ahead);
-        // Edges by themselves count where it is narrow: beside the curve.
-        let posts = self.memory.posts.iter().map(|p| footprint_of(p, place, now.course));
-        let footprints: Vec<Footprint> = footprints.into_iter().chain(posts).collect();
         let Body { half_width, margin } = self.body;
-        let curve = Curve { half_width, margin, radius, length: FREE };
+        let curve = Curve { half_width, margin, radius, length: FREE, least };
         let turn = |sign| free_turn(&footprints, &curve, sign);
         let (left, right) = (turn(1.0), turn(-1.0));
         let freer = if left == right { c.freer == course::Freer::Left } else { left < right };
@@ -154,11 +157,4 @@ impl Sight {
         let course = self.moment.course;
         self.stops.last().map_or(course, |s| s.yaw) - course
     }
-}
-
-/// A post as a footprint without extent, from the middle of a body at `place` that goes along `course`.
-fn footprint_of(post: &Post, place: [f64; 2], course: f64) -> Footprint {
-    let (s, c) = libm::sincos(course);
-    let (x, y) = (post.place[0] - place[0], post.place[1] - place[1]);
-    [[x * c + y * s, y * c - x * s]; 4]
 }

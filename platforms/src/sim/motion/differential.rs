@@ -4,6 +4,7 @@ use super::{Drive, DriveModel, Lag, Stride, Travel, chord, next_substep, span, s
 use crate::sim::{
     args::Args,
     body::{Body, Piece, Place, seconds},
+    geometry::Vec2,
     noise::{self, Stream},
 };
 use soifra_graph::Distribution;
@@ -42,7 +43,7 @@ impl Model {
 }
 
 impl DriveModel for Model {
-    fn drive(&self, seed: u64, source: &str) -> Box<dyn Drive> {
+    fn drive(&self, seed: u64, source: &str, _: Vec2) -> Box<dyn Drive> {
         let noisy = !noise::is_none(self.0.wheel_error) || !noise::is_none(self.0.rotation_error);
         let mut noise = stream(noisy, seed, source);
         let factor = std::array::from_fn(|_| noise.as_mut().map_or(1.0, |n| n.factor(self.0.wheel_error)));

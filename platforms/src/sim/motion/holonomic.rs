@@ -36,7 +36,7 @@ impl Model {
 }
 
 impl DriveModel for Model {
-    fn drive(&self, seed: u64, source: &str) -> Box<dyn Drive> {
+    fn drive(&self, seed: u64, source: &str, _: Vec2) -> Box<dyn Drive> {
         Box::new(Holonomic {
             model: Arc::clone(&self.0),
             since: 0,

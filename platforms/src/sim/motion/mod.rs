@@ -3,14 +3,18 @@
 pub mod differential;
 pub mod holonomic;
 mod lag;
+mod phase;
 pub mod quadrotor;
 mod stride;
+pub mod submersible;
 
 use lag::Lag;
+use phase::Phase;
 
 use super::{
     args::Args,
     body::{Body, Place, seconds},
+    geometry::Vec2,
     noise::Stream,
 };
 use std::fmt;
@@ -64,9 +68,13 @@ pub trait Drive: fmt::Debug + Send {
     fn stop(&mut self, body: &mut Body, now: i64, checked: i64) {
         self.twist(body, now, [0.0; 6], i64::MAX, checked);
     }
-    /// Makes ready what has to be: what flies takes off.
+    /// Is without power from now on: what holds itself against a current drifts, all others stop.
+    fn power_off(&mut self, body: &mut Body, now: i64, checked: i64) {
+        self.stop(body, now, checked);
+    }
+    /// Makes ready what has to be: what leaves the ground takes off.
     fn prepare(&mut self, _body: &mut Body, _now: i64, _checked: i64) {}
-    /// Comes down, where it flies; else stops.
+    /// Comes down, where it has left the ground; else stops.
     fn land(&mut self, body: &mut Body, now: i64, checked: i64) {
         self.stop(body, now, checked);
     }
@@ -87,24 +95,26 @@ pub struct Stride {
 
 /// The parameters of a drive, shared by all robots of a platform.
 pub trait DriveModel: fmt::Debug {
-    /// The drive of one robot; `source` names its stream of noise.
-    fn drive(&self, seed: u64, source: &str) -> Box<dyn Drive>;
+    /// The drive of one robot; `source` names its stream of noise. The water moves with `current` (m/s, in map).
+    fn drive(&self, seed: u64, source: &str, current: Vec2) -> Box<dyn Drive>;
     /// Whether it can walk strides.
     fn strides(&self) -> bool;
     /// Whether it has two wheels to count pulses at.
     fn wheels(&self) -> bool;
     /// Whether it leaves the ground.
-    fn flies(&self) -> bool {
+    fn leaves_ground(&self) -> bool {
         false
     }
 }
 
-/// Builds the drive model of a component. What flies takes off to `height` over its start.
-pub fn build(args: Args<'_>, height: Option<f64>) -> Result<Box<dyn DriveModel>, String> {
+/// Builds the drive model of a component, for a body of `mass` (kg). What leaves the ground takes off to `height` (m)
+/// over its start.
+pub fn build(args: Args<'_>, mass: f64, height: Option<f64>) -> Result<Box<dyn DriveModel>, String> {
     match &*args.part.model {
         "differential" => Ok(Box::new(differential::Model::new(args)?)),
         "holonomic" => Ok(Box::new(holonomic::Model::new(args)?)),
         "quadrotor" => Ok(Box::new(quadrotor::Model::new(args, height)?)),
+        "submersible" => Ok(Box::new(submersible::Model::new(args, mass, height)?)),
         _ => Err(args.wrong("the simulator has no such drive")),
     }
 }

@@ -1,6 +1,6 @@
 //! Four rotors: it tilts to go somewhere, and needs time to settle after it has turned.
 
-use super::{Drive, DriveModel, Lag, Stride, Travel, next_substep, stream};
+use super::{Drive, DriveModel, Lag, Phase, Stride, Travel, next_substep, stream};
 use crate::sim::{
     args::Args,
     body::{Body, Piece, Place, seconds},
@@ -19,9 +19,6 @@ const DAMPING: f64 = 0.8;
 
 /// A gust lasts so long (ns).
 const GUST: i64 = 100_000_000;
-
-/// As near as this to the height that was asked for, it has taken off (m).
-const THERE: f64 = 0.02;
 
 /// Parameters, by platform.
 #[derive(Debug, Clone)]
@@ -71,7 +68,7 @@ impl Model {
 }
 
 impl DriveModel for Model {
-    fn drive(&self, seed: u64, source: &str) -> Box<dyn Drive> {
+    fn drive(&self, seed: u64, source: &str, _: Vec2) -> Box<dyn Drive> {
         Box::new(Quadrotor {
             model: Arc::clone(&self.0),
             since: 0,
@@ -96,22 +93,9 @@ impl DriveModel for Model {
         false
     }
 
-    fn flies(&self) -> bool {
+    fn leaves_ground(&self) -> bool {
         true
     }
-}
-
-/// What it is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Phase {
-    /// It stands and has not begun to take off.
-    Ground,
-    /// It climbs to its height; what it is commanded does not count yet.
-    TakingOff,
-    /// It follows its commands.
-    Flying,
-    /// It goes down; what it is commanded does not count any more.
-    Landing,
 }
 
 /// What is integrated. The heading is that of the body's way.
@@ -161,7 +145,7 @@ impl Quadrotor {
         if on_ground || dt <= 0.0 {
             return s;
         }
-        let steered = self.phase == Phase::Flying;
+        let steered = self.phase == Phase::Underway;
         let [ahead, left, up, turn] = if steered { self.target } else { [0.0; 4] };
         let (sin, cos) = libm::sincos(s.heading);
         // In the frame that is turned with the body and stays level.
@@ -228,15 +212,12 @@ impl Drive for Quadrotor {
             self.gust = [noise.draw(self.model.gust), noise.draw(self.model.gust)];
             self.gust_ends = t.saturating_add(GUST);
         }
-        match self.phase {
-            Phase::TakingOff if self.state.height >= self.hold - THERE => self.phase = Phase::Flying,
-            Phase::Landing if self.state.height <= self.hold + THERE => {
-                self.phase = Phase::Ground;
-                let State { heading, way, .. } = self.state;
-                self.state = State { height: self.hold, heading, way, ..State::default() };
-            }
-            _ => {}
+        let phase = self.phase.next(self.state.height, self.hold);
+        if phase == Phase::Ground && self.phase == Phase::Landing {
+            let State { heading, way, .. } = self.state;
+            self.state = State { height: self.hold, heading, way, ..State::default() };
         }
+        self.phase = phase;
     }
 
     /// Plans one piece from `t`, the instant of the state, on.
@@ -270,7 +251,7 @@ impl Drive for Quadrotor {
         let scale = (m.max_speed / norm([twist[0], twist[1]])).min(1.0);
         let up = twist[2].clamp(-m.max_climb, m.max_climb);
         let turn = twist[5].clamp(-m.max_turn, m.max_turn);
-        if self.phase == Phase::Flying && (up != 0.0 || self.target[2] != 0.0) {
+        if self.phase == Phase::Underway && (up != 0.0 || self.target[2] != 0.0) {
             self.hold = self.state.height;
         }
         (self.target, self.expires) = ([twist[0] * scale, twist[1] * scale, up, turn], expires);
@@ -295,7 +276,7 @@ impl Drive for Quadrotor {
 
     fn land(&mut self, body: &mut Body, now: i64, checked: i64) {
         let from = self.command(body, now, checked);
-        if matches!(self.phase, Phase::TakingOff | Phase::Flying) {
+        if matches!(self.phase, Phase::TakingOff | Phase::Underway) {
             (self.phase, self.hold) = (Phase::Landing, body.floor());
         }
         self.plan(body, now, from, checked);

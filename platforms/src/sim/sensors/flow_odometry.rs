@@ -26,6 +26,8 @@ struct Reckoning {
     at: Vec2,
     heading: f64,
     scale: f64,
+    /// Of the gyroscope, rad/s.
+    bias: f64,
 }
 
 impl FlowOdometry {
@@ -33,14 +35,15 @@ impl FlowOdometry {
     pub fn new(mount: Mount<'_>) -> Result<FlowOdometry, String> {
         let args = mount.args;
         let (speed_noise, turn_noise) = (args.distribution("speed_noise")?, args.distribution("turn_noise")?);
-        let scale = args.distribution("scale_error")?;
-        let needed = [speed_noise, turn_noise, scale].into_iter().any(|d| !noise::is_none(d));
+        let (scale, bias) = (args.distribution("scale_error")?, args.distribution("turn_bias")?);
+        let needed = [speed_noise, turn_noise, scale, bias].into_iter().any(|d| !noise::is_none(d));
         let mut streams = mount.streams(needed);
         let seat = |seat| Reckoning {
             was: None,
             at: [0.0; 2],
             heading: 0.0,
             scale: 1.0 + draw(&mut streams, seat, scale).clamp(-0.9, 0.9),
+            bias: draw(&mut streams, seat, bias),
         };
         let seats = (0..mount.robots.len()).map(seat).collect();
         Ok(FlowOdometry { period: args.period("period")?.seconds(), speed_noise, turn_noise, streams, seats })
@@ -59,7 +62,7 @@ impl Sensor for FlowOdometry {
             for d in &mut way {
                 *d = *d * r.scale + draw(&mut self.streams, seat, self.speed_noise) * self.period;
             }
-            turn += draw(&mut self.streams, seat, self.turn_noise) * self.period;
+            turn += (r.bias + draw(&mut self.streams, seat, self.turn_noise)) * self.period;
         }
         r.at = along(r.at, chord(r.heading, way[0], way[1], turn, 1.0), 1.0);
         r.heading += turn;

@@ -5,5 +5,6 @@
 mod approach;
 mod contact;
 mod geometry;
+mod places;
 mod robustness;
 mod scene;
