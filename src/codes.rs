@@ -168,6 +168,26 @@ pub const PAGES: &[Page] = &[
         "The mission calls a function that is computed by a library which this program was built without. Vision services (`look`, `contact_by_expansion`, …) come with the feature `vision`, which is on by default and needs OpenCV; `make` installs it.",
     ),
     page(
+        "S9030",
+        "A mission and a recording do not go together",
+        "A robot whose platform is a recording (`drive = recorded()`) reads what `--recording PATH` names, or the `file` of its profile. The report says what is missing: no recording is named, no robot takes one, a sensor that an agent reads was not recorded, some robots are simulated beside it. Images alone have readings of a camera and of nothing else; a trace has all that was read in its run, by name of robot and sensor.",
+    ),
+    page(
+        "S9031",
+        "The recording cannot be read",
+        "There is no such file or folder, no image in it, a format that is not known, or a file that is damaged or cut off; the report names it. Recordings are folders of PNG or JPEG files, taken in the order of their names (numbers in them count as numbers), patterns of such files (`frames/left_%04d.png`, `frames/*.jpg`), .y4m files (8 bits; 4:2:0, 4:2:2, 4:4:4 or luma alone; progressive, square pixels), and traces. `ffmpeg -i VIDEO -pix_fmt yuv420p FILE.y4m` converts other videos. All images are read once before the run starts.",
+    ),
+    page(
+        "S9032",
+        "The images of the recording do not fit",
+        "Images of one recording have one size, at most 8192 pixels a side, in grey or RGB; a `camera` that declares its width and height takes no others (a `footage` takes any). The report names the first image that differs.",
+    ),
+    page(
+        "S9033",
+        "The rate of the recording is not known",
+        "Image files do not tell how many of them were taken a second: say it with `--rate 20Hz`, or as `rate` of the profile's `recorded`. It is above zero, and at most 1 MHz. A .y4m file has a rate of its own, which `--rate` replaces; a trace has the times of its images, and takes no rate.",
+    ),
+    page(
         "S9999",
         "A defect of soifra",
         "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files.",

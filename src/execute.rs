@@ -1,15 +1,18 @@
-//! Runs a mission in the simulator: graph, parameters and seed in, report and trace out.
+//! Runs a mission in the simulator or on a recording: graph, parameters and seed in, report and trace out.
 
 use crate::{
     exit::Exit,
     files, graph_file,
+    recording::{self, Everywhere},
     report::{Findings, Refusal},
     services::Everything,
     trace_file,
 };
 use soifra_graph::{Diagnostic, Graph, Value, span::Source};
-use soifra_platforms::sim::{Simulator, camera::Rendered};
-use soifra_runtime::{Engine, Mission, NoTrace, Outcome, Pacer, RunReport, Scene, Settings, TraceSink};
+use soifra_platforms::sim::Simulator;
+use soifra_runtime::{
+    Engine, Mission, NoTrace, Outcome, Pacer, Platform, RunReport, Scene, Settings, TraceSink,
+};
 use std::{
     collections::BTreeMap,
     sync::{Arc, atomic::AtomicBool},
@@ -19,7 +22,7 @@ use std::{
 pub fn load(graph: Graph) -> Result<Mission, Refusal> {
     let sources = graph.sources.clone();
     let mission = Mission::load(graph).map_err(|diagnostics| refuse(diagnostics, sources))?;
-    Ok(mission.with_services(Arc::new(Everything)).with_cameras(Arc::new(Rendered)))
+    Ok(mission.with_services(Arc::new(Everything)).with_cameras(Arc::new(Everywhere::default())))
 }
 
 /// Settings for one run.
@@ -33,13 +36,38 @@ pub struct Prepared<'m> {
     mission: &'m Mission,
     settings: Settings,
     scene: Scene,
+    /// What robots read that are not simulated.
+    recording: Option<recording::Opened>,
+}
+
+/// What the robots of a scene are: simulated, with so many threads at most, or recorded.
+fn platform(
+    scene: &Scene,
+    recording: Option<&recording::Opened>,
+    threads: usize,
+    not_simulated: impl Fn(String) -> Refusal,
+) -> Result<Box<dyn Platform>, Refusal> {
+    Ok(match recording {
+        Some(recording) => Box::new(recording.platform(scene)?),
+        None => Box::new(Simulator::with_threads(scene, threads).map_err(not_simulated)?),
+    })
+}
+
+/// The same for a scene whose recording, if there is one, has not been opened.
+pub fn platform_again(
+    scene: &Scene,
+    threads: usize,
+    not_simulated: impl Fn(String) -> Refusal,
+) -> Result<Box<dyn Platform>, Refusal> {
+    platform(scene, recording::open(scene)?.as_ref(), threads, not_simulated)
 }
 
 impl<'m> Prepared<'m> {
-    /// Evaluates the scene for the settings.
+    /// Evaluates the scene for the settings, and opens the recording if there is one.
     pub fn new(mission: &'m Mission, settings: Settings) -> Result<Self, Refusal> {
         let scene = mission.scene(&settings).map_err(|d| refuse(vec![d], mission.graph().sources.clone()))?;
-        Ok(Prepared { mission, settings, scene })
+        let recording = recording::open(&scene)?;
+        Ok(Prepared { mission, settings, scene, recording })
     }
 
     /// The scene.
@@ -65,9 +93,8 @@ impl<'m> Prepared<'m> {
         pacer: Option<&mut dyn Pacer>,
     ) -> Result<RunReport, Refusal> {
         let sources = || self.mission.graph().sources.clone();
-        let mut simulator = Simulator::with_threads(&self.scene, self.settings.threads)
-            .map_err(|why| self.not_simulated(why))?;
-        let engine = Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, sink, stop);
+        let mut platform = self.platform(self.settings.threads)?;
+        let engine = Engine::new(self.mission, &self.settings, &self.scene, &mut *platform, sink, stop);
         let mut engine = engine.map_err(|d| refuse(vec![d], sources()))?;
         if let Some(pacer) = pacer {
             engine.paced(pacer);
@@ -77,12 +104,16 @@ impl<'m> Prepared<'m> {
 
     /// Refuses a run that cannot start.
     pub fn starts(&self) -> Result<(), Refusal> {
-        let mut simulator = Simulator::new(&self.scene).map_err(|why| self.not_simulated(why))?;
+        let mut platform = self.platform(1)?;
         let (mut sink, stop) = (NoTrace, AtomicBool::new(false));
-        match Engine::new(self.mission, &self.settings, &self.scene, &mut simulator, &mut sink, &stop) {
+        match Engine::new(self.mission, &self.settings, &self.scene, &mut *platform, &mut sink, &stop) {
             Ok(_) => Ok(()),
             Err(d) => Err(refuse(vec![d], self.mission.graph().sources.clone())),
         }
+    }
+
+    fn platform(&self, threads: usize) -> Result<Box<dyn Platform>, Refusal> {
+        platform(&self.scene, self.recording.as_ref(), threads, |why| self.not_simulated(why))
     }
 
     /// The scene has a part that the simulator does not take.
@@ -100,6 +131,9 @@ impl<'m> Prepared<'m> {
         stop: &AtomicBool,
         pacer: Option<&mut dyn Pacer>,
     ) -> Result<(RunReport, trace_file::Finished), Refusal> {
+        for recording in self.recording.iter().flat_map(|r| r.paths()) {
+            files::keep_apart(recording, path)?;
+        }
         // A run that cannot start leaves no file, and none that was there is emptied.
         self.starts()?;
         let header = header(self.mission, &self.settings, &self.scene)?;

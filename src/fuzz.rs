@@ -1,7 +1,7 @@
 //! Fuzz bodies: plain functions that take any bytes and must neither panic nor hang. The test suite
 //! runs them over a corpus; `fuzz/` wraps them for cargo-fuzz.
 
-use crate::{graph_file, plot, trace_file};
+use crate::{graph_file, plot, recording, trace_file};
 use soifra_graph::{Diagnostic, Graph, Severity};
 use soifra_lang::CheckOptions;
 use soifra_runtime::{Mission, Settings};
@@ -71,6 +71,20 @@ pub fn fuzz_trace(data: &[u8]) {
             assert!(!picture.to_svg().contains("NaN"), "a picture has places that are no numbers");
             let _ = picture.to_png(60);
         }
+    }
+}
+
+/// Reads a video and an image, whole or damaged.
+pub fn fuzz_images(data: &[u8]) {
+    let mut input = Cursor::new(data);
+    if let Ok(video) = recording::Y4m::index(&mut input) {
+        for n in 0..video.count().min(8) {
+            let pixels = video.image(&mut input, n).map(|i| i.len());
+            assert_eq!(pixels, Ok(3 * video.width * video.height), "a frame that was found is not there");
+        }
+    }
+    if let Ok(image) = recording::decode(data) {
+        assert_eq!(image.data.len(), 3 * image.width * image.height, "an image without all of its pixels");
     }
 }
 

@@ -20,6 +20,7 @@ mod mermaid;
 pub mod output;
 pub mod plot;
 pub mod realtime;
+pub mod recording;
 pub mod relative;
 pub mod report;
 pub mod seeds;

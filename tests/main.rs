@@ -7,6 +7,7 @@ mod cli;
 mod corpus;
 mod fuzz;
 mod missions;
+mod recording;
 mod structure;
 mod support;
 mod timing;

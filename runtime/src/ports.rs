@@ -109,6 +109,12 @@ pub enum Report {
         /// Why.
         reason: String,
     },
+    /// A recording is over: nothing more is handed over, and the run ends at this instant unless something else
+    /// ends it.
+    Over {
+        /// When.
+        at: Time,
+    },
 }
 
 /// Everything that moves in one run: simulated robots, driven robots, or both.

@@ -10,7 +10,6 @@ use crate::{
 };
 use clap::{Args, ValueHint};
 use serde::Serialize;
-use soifra_platforms::sim::Simulator;
 use soifra_runtime::{
     Mission, Record, RunReport, Settings, Snapshot, Time,
     replay::{self, Difference, ReplayError},
@@ -153,7 +152,7 @@ fn replay<'r>(
     } else {
         match mission.scene(settings) {
             Ok(scene) => {
-                let mut simulator = Simulator::with_threads(&scene, settings.threads).map_err(|why| {
+                let mut platform = execute::platform_again(&scene, settings.threads, |why| {
                     Refusal::about(
                         &a.trace,
                         "S9020",
@@ -162,7 +161,7 @@ fn replay<'r>(
                         "replay it with `--recorded`",
                     )
                 })?;
-                replay::resimulate(mission, settings, &scene, &mut simulator, &mut tape)
+                replay::resimulate(mission, settings, &scene, &mut *platform, &mut tape)
             }
             Err(d) => Err(ReplayError::Start(d)),
         }

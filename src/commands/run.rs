@@ -1,4 +1,4 @@
-//! `soifra run`: runs a mission in the simulator.
+//! `soifra run`: runs a mission in the simulator, or on a recording.
 
 use crate::{
     cli::Mission,
@@ -7,6 +7,7 @@ use crate::{
     files, graph_file, interrupt,
     output::{self, Format},
     realtime::{Lateness, Operator, Summary, WallPacer},
+    recording,
     report::{
         JsonDiagnostic, Refusal,
         table::{figure, table},
@@ -21,7 +22,7 @@ use std::collections::BTreeMap;
 /// Arguments.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  soifra run patrol.soi --seed 7\n  soifra run patrol.soi --set critical_distance=3m --set rules=careful --trace none\n  soifra run patrol.soi --realtime --lateness out/lateness.csv"
+    after_help = "Examples:\n  soifra run patrol.soi --seed 7\n  soifra run patrol.soi --set critical_distance=3m --set rules=careful --trace none\n  soifra run patrol.soi --realtime --lateness out/lateness.csv\n  soifra run watch.soi --recording my_frames/ --rate 20Hz"
 )]
 pub struct Arguments {
     #[command(flatten)]
@@ -32,6 +33,12 @@ pub struct Arguments {
     /// Set a parameter of the mission, with its unit
     #[arg(long = "set", value_name = "NAME=VALUE")]
     sets: Vec<String>,
+    /// What recorded robots read: a folder or numbered pattern of PNG or JPEG files, a .y4m file, or a trace
+    #[arg(long, value_name = "PATH", value_hint = ValueHint::AnyPath)]
+    recording: Option<String>,
+    /// How many images a second the recording has, with its unit; a .y4m file tells by itself
+    #[arg(long, value_name = "RATE", allow_hyphen_values = true)]
+    rate: Option<String>,
     /// Threads to use; changes the speed, never the result [default: RAYON_NUM_THREADS, else all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -82,7 +89,8 @@ struct Host {
 /// Runs the command.
 pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let stop = interrupt::flag();
-    let compiled = a.mission.compile()?;
+    let mut compiled = a.mission.compile()?;
+    recording::name(&mut compiled.graph, a.recording.as_deref(), a.rate.as_deref())?;
     compiled.findings.print();
     let mut sets = Vec::new();
     for s in &a.sets {

@@ -1,8 +1,10 @@
 //! The contact sheet: what cameras saw, one image beside the other.
 
 use super::{PngError, Selection};
-use crate::trace_file::{Reader, TraceError};
-use soifra_platforms::sim::camera::Rendered;
+use crate::{
+    recording::Everywhere,
+    trace_file::{Reader, TraceError},
+};
 use soifra_runtime::{
     Event, Time,
     objects::{Cameras, Frame},
@@ -52,7 +54,7 @@ impl Sheet {
         let all = taken.len();
         let some = limit.min(all);
         let chosen = (0..some).filter_map(|i| taken.get(i * all / some.max(1)));
-        let mut cameras = Rendered.of(&reader.header().scene);
+        let mut cameras = Everywhere::default().of(&reader.header().scene);
         let frame = |t: &Taken| {
             let image = cameras.as_mut()?.retake(t.robot, t.sensor, t.captured, &t.view)?;
             Some(Frame::clone(&image))

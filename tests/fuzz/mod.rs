@@ -1,7 +1,7 @@
 //! The fuzz bodies over a corpus: every source of the repository, whole, cut off and damaged.
 
 use crate::support::files;
-use soifra::fuzz::{fuzz_check, fuzz_graph, fuzz_parse, fuzz_trace};
+use soifra::fuzz::{fuzz_check, fuzz_graph, fuzz_images, fuzz_parse, fuzz_trace};
 
 /// Cut-offs and damages of `data`, the same at every run.
 fn variants(data: &[u8], count: usize) -> Vec<Vec<u8>> {
@@ -107,6 +107,15 @@ fn trace() {
         }
         for s in seeds {
             variants(&s, 60).iter().for_each(|v| fuzz_trace(v));
+        }
+    });
+}
+
+#[test]
+fn images() {
+    with_stack(|| {
+        for s in crate::recording::samples() {
+            variants(&s, 60).iter().for_each(|v| fuzz_images(v));
         }
     });
 }

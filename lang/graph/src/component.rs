@@ -55,6 +55,11 @@ const TABLE: &[(&str, &str, &str)] = &[
     ),
     (
         "drive",
+        "recorded(file: Text = \"\", rate: Frequency? = none)",
+        "What was recorded, not simulated: sensors read the recording, and commands move nothing. `file` is a folder or a numbered pattern of images, a Y4M file or a trace, and `rate` how many images a second it has where it does not tell; both can be given with `--recording` and `--rate`",
+    ),
+    (
+        "drive",
         "submersible(max_speed: Velocity, max_climb: Velocity, max_turn: AngularVelocity, thrust: Vector<base_link, Force>, torque: Torque, added_mass: Vector<base_link, Mass>, inertia: Inertia, linear_drag: Vector<base_link, Quantity<kg/s>>, quadratic_drag: Vector<base_link, Quantity<kg/m>>, linear_turn_drag: Quantity<m2*kg/s/rad> = 0, quadratic_turn_drag: Quantity<m2*kg/rad2> = 0, thruster_lag: Duration = 100 ms, velocity_lag: Duration = 500 ms, turn_lag: Duration = 300 ms)",
         "Thrusters under water, neutrally buoyant and held level. Vectors are ahead, left, up; thrust and torque are the most that the thrusters give, each with a lag of first order, and those for ahead, left and turn share what they have. The mass is that of the body and the water it drags along; inertia is about z, that of the water included; drag counts against the water. An autopilot holds the commanded speed over the ground with the time constants, and the depth; without power it drifts with the current",
     ),
@@ -98,6 +103,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "sensor",
         "camera(width: Int, height: Int, field_of_view: Angle, at: Vector<base_link>, period: Duration, latency: Duration = 0 s, tilt: Angle = 0, noise: Number = 0.008, gain: Number = 1, k1: Number = 0, k2: Number = 0) -> Image",
         "RGB images of the world from `at` on the robot, looking ahead and `tilt` down; the field of view is that of a row. Noise is the standard deviation of every channel, relative to white; gain is the exposure; k1 and k2 are the radial distortion of the lens. Without anybody who reads it nothing is rendered",
+    ),
+    (
+        "sensor",
+        "footage(field_of_view: Angle, at: Vector<base_link>, latency: Duration = 0 s, tilt: Angle = 0, k1: Number = 0, k2: Number = 0) -> Image",
+        "Images of a recording, of whatever size, taken from `at` on the robot, looking ahead and `tilt` down; the lens is declared as that of a camera. In a trace place and lens are those of the camera that took them. A reading counts until the next one",
     ),
     (
         "sensor",

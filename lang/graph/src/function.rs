@@ -80,6 +80,7 @@ functions! {
     ContactByRobustFlow "contact_by_robust_flow(sight: Sight, rotating: AngularVelocity = 0.6 rad/s) -> Duration?" "The same by flow over a longer time, with the robot's own turns taken out; none while it turns faster than `rotating`";
     Diverging "diverging(sight: Sight) -> Bool?" "Whether the flows of the first obstacle's sides do not meet (the published test of a collision course)";
     CourseAhead "course_ahead(sight: Sight, radius: Length = 0, least: Angle = 0) -> CourseAhead?" "What going straight on leads to, for the body and margin that `look` was told, and how far to turn, on a curve of that radius and by that much at least, for a free way";
+    NearestPairAhead "nearest_pair_ahead(sight: Sight) -> CourseAhead?" "The same by the published detection (SOIFRA, Algorithm 1): the nearest upright edge on each side of the optical centre, a collision when their flows between two images do not meet, the distance by the focus of expansion of that flow (Eq. 4), and more room on the side where the pair is not. Of clearance and turns it says nothing: they are 0";
     Within "within<D>(x: Quantity<D>, range: Range<D>) -> Bool" "Whether a quantity is in a range";
 }
 

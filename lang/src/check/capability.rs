@@ -56,10 +56,14 @@ fn complete(p: &Platform, out: &mut Vec<Diagnostic>) {
     }
 }
 
+/// The drive of a platform that is a recording.
+const RECORDED: &str = "recorded";
+
 /// What only one kind of drive has: an actuator or sensor, the drive that it needs, and why.
 const NEEDS_DRIVE: &[(&str, &str, &str)] = &[
     ("strides", "holonomic", "a stride goes in any direction"),
     ("encoders", "differential", "pulses are counted at two wheels"),
+    ("footage", "recorded", "its images come from a recording"),
 ];
 
 /// Sensors, what they read, and why: a role of the platform and, unless any will do, its model.
@@ -107,9 +111,12 @@ const LEAVES_GROUND: &[(&str, &str)] = &[("quadrotor", "flies"), ("submersible",
 const OFF_THE_GROUND: &[(&str, &str)] =
     &[("prepare", "take_off"), ("safe", "hover"), ("safe", "land"), ("finish", "land")];
 
-/// A drive that leaves the ground takes off; others do not.
+/// A drive that leaves the ground takes off; others do not. What was recorded may have left it.
 fn airborne(p: &Platform, out: &mut Vec<Diagnostic>) {
     let Some(drive) = p.of_role("drive").next() else { return };
+    if *drive.model == *RECORDED {
+        return;
+    }
     let leaves = LEAVES_GROUND.iter().find(|(model, _)| *drive.model == **model);
     if let Some((_, what)) = leaves
         && !p.of_role("prepare").any(|c| *c.model == *"take_off")
@@ -134,10 +141,10 @@ fn airborne(p: &Platform, out: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Actuators and sensors that the drive cannot serve.
+/// Actuators and sensors that the drive cannot serve. A recording serves all.
 fn driven(p: &Platform, out: &mut Vec<Diagnostic>) {
     let Some(drive) = p.of_role("drive").next() else { return };
-    for c in &p.components {
+    for c in p.components.iter().filter(|_| *drive.model != *RECORDED) {
         for (model, needed, why) in NEEDS_DRIVE {
             if *c.model == **model && *drive.model != **needed {
                 out.push(

@@ -59,6 +59,7 @@ pub const RULES: &[(&str, Must)] = &[
     ("quadratic_turn_drag", Must::NotBeNegative),
     ("radius", Must::BePositive),
     ("range", Must::AscendFromZero),
+    ("rate", Must::BePositive),
     ("reflectance", Must::BeAChance),
     ("repeat", Must::BePositive),
     ("size", Must::BePositive),

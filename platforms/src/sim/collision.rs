@@ -362,5 +362,6 @@ fn order(r: &Report) -> (Time, u32, u32) {
             (*at, *robot, other.unwrap_or(u32::MAX))
         }
         Report::Lost { at, robot, .. } => (*at, *robot, u32::MAX),
+        Report::Over { at } => (*at, u32::MAX, u32::MAX),
     }
 }

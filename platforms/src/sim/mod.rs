@@ -4,7 +4,7 @@
 //! up to now. A sensor captures at multiples of its period and delivers a latency later. What a poll
 //! returns depends on the commands and the instant alone, not on earlier polls.
 
-mod args;
+pub(crate) mod args;
 mod body;
 pub mod camera;
 mod cargo;
@@ -28,7 +28,8 @@ use collision::Collisions;
 use motion::{Drive, Stride};
 use movers::Mover;
 use power::Battery;
-use scene::{Endings, Things};
+use scene::Things;
+pub(crate) use scene::{Endings, endings};
 use schedule::Schedule;
 use soifra_runtime::{Platform, Readings, Report, Scene, Time, WorldTruth};
 

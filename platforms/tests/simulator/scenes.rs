@@ -171,7 +171,7 @@ pub fn contacts(reports: &[Report]) -> Vec<(i64, bool, u32, Option<u32>, String)
             Report::ContactEnd { at, robot, other, with } => {
                 Some((at.0, false, *robot, *other, with.clone()))
             }
-            Report::Lost { .. } => None,
+            Report::Lost { .. } | Report::Over { .. } => None,
         })
         .collect()
 }

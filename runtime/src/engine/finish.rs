@@ -5,7 +5,7 @@ use super::{
     contacts::Touch,
     instant::End,
     judge::Occasion,
-    report::{ContactReport, ExpectationReport, GoalReport, INTERRUPTED, RobotReport, RunReport},
+    report::{ContactReport, ExpectationReport, GoalReport, INTERRUPTED, OVER, RobotReport, RunReport},
 };
 use crate::Event;
 use std::collections::BTreeMap;
@@ -16,6 +16,8 @@ impl Engine<'_> {
         let why = match end.outcome {
             Outcome::Aborted if end.reason == INTERRUPTED => INTERRUPTED.to_string(),
             Outcome::Aborted => format!("the run is aborted: {}", end.reason),
+            // A replay finds the end of the recording by these words.
+            _ if end.reason == OVER => OVER.to_string(),
             _ => "the run has ended".to_string(),
         };
         let cause = if why == INTERRUPTED { self.operator.cause() } else { None };

@@ -6,7 +6,7 @@ use super::{
     env::Instant,
     judge::{Court, Occasion},
     queue::Scheduled,
-    report::{INTERRUPTED, RunReport},
+    report::{INTERRUPTED, OVER, RunReport},
 };
 use crate::{Event, Reading, Report, Time, objects::Frame};
 use std::{
@@ -114,9 +114,13 @@ impl Engine<'_> {
         self.platform.poll(self.now, &mut readings, &mut reports);
         self.contacts_begin_and_end(&reports, before);
         for report in &reports {
-            if let Report::Lost { robot, reason, .. } = report {
-                let text = format!("{}{reason}", super::report::LOST);
-                self.fail(Some(*robot), super::report::PLATFORM, text, None);
+            match report {
+                Report::Lost { robot, reason, .. } => {
+                    let text = format!("{}{reason}", super::report::LOST);
+                    self.fail(Some(*robot), super::report::PLATFORM, text, None);
+                }
+                Report::Over { .. } => self.over = true,
+                Report::ContactBegin { .. } | Report::ContactEnd { .. } => {}
             }
         }
         self.trace_poses();
@@ -192,7 +196,7 @@ impl Engine<'_> {
             let (at, robot, other, with, begin) = match report {
                 Report::ContactBegin { at, robot, other, with } => (*at, *robot, *other, with, true),
                 Report::ContactEnd { at, robot, other, with } => (*at, *robot, *other, with, false),
-                Report::Lost { .. } => continue,
+                Report::Lost { .. } | Report::Over { .. } => continue,
             };
             let at = at.max(before).min(self.now);
             if let Some(t) = began
@@ -521,6 +525,9 @@ impl Engine<'_> {
         }
         if done {
             return Some(End { outcome: Outcome::Success, reason: "done".into() });
+        }
+        if self.over {
+            return Some(End { outcome: Outcome::Success, reason: OVER.into() });
         }
         if self.limit.is_some_and(|l| now >= l) {
             let reason = format!("not done within {} s", now.seconds());

@@ -100,6 +100,8 @@ pub struct Engine<'m> {
     now: Time,
     /// The run goes on from a snapshot, behind the instant it was taken at.
     resumed: bool,
+    /// The platform has no more to hand over, ever.
+    over: bool,
     /// When the platform was polled last.
     polled: Time,
     params: Vec<f64>,

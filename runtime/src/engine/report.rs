@@ -77,6 +77,9 @@ pub const INTERRUPTED: &str = "interrupted";
 /// Stands for the agent in records of a lost platform.
 pub const PLATFORM: &str = "platform";
 
+/// Reason of a run that ended with its recording, and of the last safe actions in it.
+pub const OVER: &str = "the recording is over";
+
 /// How the text of such a record begins; the platform's reason follows.
 pub const LOST: &str = "the platform is lost: ";
 

@@ -107,6 +107,7 @@ impl<'m> Engine<'m> {
             limit,
             now: Time::ZERO,
             resumed: false,
+            over: false,
             polled: Time::ZERO,
             params: start.params,
             new_params: Vec::new(),

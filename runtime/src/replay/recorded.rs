@@ -127,6 +127,8 @@ impl Platform for Recorded<'_, '_> {
                         }
                     }
                 }
+                // What every robot does at the end of a recording: no other safe action is an input.
+                Event::SafeAction { .. } => reports.push(Report::Over { at }),
                 _ => {}
             }
         }

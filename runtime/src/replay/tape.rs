@@ -2,7 +2,7 @@
 
 use crate::{
     Event, Record, Time,
-    engine::report::{INTERRUPTED, PLATFORM},
+    engine::report::{INTERRUPTED, OVER, PLATFORM},
     ports::{Input, Pacer},
 };
 use std::{cell::RefCell, collections::VecDeque};
@@ -137,6 +137,7 @@ impl State<'_> {
             | Event::Mover { .. }
             | Event::Contact { .. } => true,
             Event::Fault { agent, .. } => agent == PLATFORM,
+            Event::SafeAction { reason, .. } if reason == OVER => true,
             Event::SafeAction { reason, .. } | Event::End { reason, .. } if reason == INTERRUPTED => {
                 self.interrupted = Some(r.t);
                 false

@@ -160,8 +160,10 @@ impl Platform for World {
         }
         self.now = now;
         while let Some(first) = self.script.first() {
-            let (Report::ContactBegin { at, .. } | Report::ContactEnd { at, .. } | Report::Lost { at, .. }) =
-                first;
+            let (Report::ContactBegin { at, .. }
+            | Report::ContactEnd { at, .. }
+            | Report::Lost { at, .. }
+            | Report::Over { at }) = first;
             if *at > now {
                 break;
             }

@@ -109,15 +109,20 @@ impl Registers<'_> {
     }
 }
 
+/// The lens of an image after its distortion has been taken out.
+pub(super) fn straight(optics: &Optics) -> Lens {
+    let [fx, fy] = optics.focal;
+    // There a pixel's centre is a whole number.
+    let [cx, cy] = optics.centre.map(|c| c - 0.5);
+    Lens { fx, fy, cx, cy, distortion: None }
+}
+
 fn see(frame: &Frame, before: Option<&Sight>, asked: &Asked) -> Result<Sight, Why> {
     let size = (frame.width as usize, frame.height as usize);
     let gray = Gray::of(&ImageView::new(size.0, size.1, 3, &frame.data)?)?;
     // Of another camera nothing is remembered.
     let before = before.filter(|b| b.optics == frame.optics);
-    let [fx, fy] = frame.optics.focal;
-    // There a pixel's centre is a whole number.
-    let [cx, cy] = frame.optics.centre.map(|c| c - 0.5);
-    let lens = Lens { fx, fy, cx, cy, distortion: None };
+    let lens = straight(&frame.optics);
     let rectification = match (before, frame.optics.distortion) {
         (_, None) => None,
         (Some(Sight { rectification: Some(known), .. }), _) => Some(Arc::clone(known)),
@@ -149,7 +154,21 @@ fn see(frame: &Frame, before: Option<&Sight>, asked: &Asked) -> Result<Sight, Wh
     let (seen, memory) = look_at(gray, memory, &moment, &lens, &how)?;
     let speed = asked.odometry.map(|_| moving.speed);
     let (body, optics) = (asked.body, frame.optics);
-    Ok(Sight { seen, memory, moment, stops, speed, body, interval, rectification, optics })
+    let previous = before.and_then(|b| b.memory.image.clone());
+    let contours = how.contours;
+    Ok(Sight {
+        seen,
+        memory,
+        previous,
+        contours,
+        moment,
+        stops,
+        speed,
+        body,
+        interval,
+        rectification,
+        optics,
+    })
 }
 
 /// Where the body was at the image, and how it moved: readings are brought back to its instant by their own rates.

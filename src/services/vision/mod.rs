@@ -1,6 +1,7 @@
 //! The vision services: what a mission sees, out of images.
 
 mod eye;
+mod published;
 mod sight;
 
 use sight::Sight;
@@ -31,6 +32,7 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
             optional(out, sight.robust_flow(*rotating).map(|t| [t]))
         }
         (Function::Diverging, []) => optional(out, sight.diverging().map(|b| [f64::from(u8::from(b))])),
+        (Function::NearestPairAhead, []) => optional(out, published::ahead(sight)),
         (Function::CourseAhead, [radius, least]) => optional(out, sight.course(*radius, *least)),
         _ => Err(FaultKind::Malformed),
     }

@@ -3,7 +3,8 @@
 use soifra_graph::eval::FaultKind;
 use soifra_runtime::objects::{Object, Optics};
 use soifra_vision::{
-    Why,
+    Gray, Why,
+    contours::Contours,
     course::{self, Body, Reach},
     flow,
     follow::Moment,
@@ -29,6 +30,10 @@ pub struct Sight {
     pub seen: Seen,
     /// For the next image.
     pub memory: Memory,
+    /// The image before, in grey, for what compares two images alone.
+    pub previous: Option<Gray>,
+    /// How contours are found.
+    pub contours: Contours,
     /// The camera at the image.
     pub moment: Moment,
     /// Where the body was at this image and those before.
@@ -148,7 +153,7 @@ impl Sight {
     }
 
     /// Where the robot's x axis points, off its course.
-    fn slip(&self) -> f64 {
+    pub(super) fn slip(&self) -> f64 {
         let course = self.moment.course;
         self.stops.last().map_or(course, |s| s.yaw) - course
     }
