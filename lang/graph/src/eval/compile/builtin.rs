@@ -30,7 +30,17 @@ impl Compiler<'_> {
             | F::ContactByFlow
             | F::ContactByRobustFlow
             | F::Diverging
-            | F::CourseAhead => self.gen_service(e, f, dest),
+            | F::CourseAhead
+            | F::KnownMap
+            | F::EmptyMap
+            | F::Observe
+            | F::Localise
+            | F::Located
+            | F::MatchScan
+            | F::PlanPath
+            | F::Track
+            | F::FreeWay
+            | F::MapOverlap => self.gen_service(e, f, dest),
             F::Draw | F::Inside => self.gen_env_function(e, f, dest),
             F::Norm | F::Distance => {
                 self.check_call(e, f)?;
