@@ -115,14 +115,16 @@ pub trait Shelf {
     fn put(&mut self, object: Arc<dyn Object>) -> f64;
     /// What of the world is on the map that missions may know: bounds, and the walls and obstacles that are `mapped`.
     fn mapped(&self) -> Vec<&Part>;
+    /// The same of all walls and obstacles that there are: for judgements, nothing for agents.
+    fn standing(&self) -> Option<Vec<&Part>>;
 }
 
-/// What of a scene is on the map.
-pub(crate) fn mapped(scene: &Scene) -> Vec<&Part> {
-    let on_map = |p: &&Part| match &*p.role {
+/// Bounds, walls and obstacles of a scene; all, or those on the map.
+pub(crate) fn standing(scene: &Scene, all: bool) -> Vec<&Part> {
+    let stands = |p: &&Part| match &*p.role {
         "bounds" => true,
-        "wall" | "obstacle" => p.args.get("mapped") != Some(&Value::Bool(false)),
+        "wall" | "obstacle" => all || p.args.get("mapped") != Some(&Value::Bool(false)),
         _ => false,
     };
-    scene.world.iter().filter(on_map).collect()
+    scene.world.iter().filter(stands).collect()
 }

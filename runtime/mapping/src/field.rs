@@ -48,6 +48,21 @@ impl Field {
     pub fn of_point(&self, at: [f64; 2]) -> f64 {
         self.layout.cell_of(at).map_or(0.0, |cell| self.at(cell))
     }
+
+    /// The distance at a point, between the middles of the four cells around it; far outside.
+    pub fn between(&self, at: [f64; 2]) -> f64 {
+        let [x, y] = self.layout.position(at).map(|v| v - 0.5);
+        let (i, j) = (x.floor(), y.floor());
+        let [nx, ny] = self.layout.size;
+        if !(i >= 0.0 && j >= 0.0 && i + 1.0 < nx as f64 && j + 1.0 < ny as f64) {
+            return f64::INFINITY;
+        }
+        let (u, v, i, j) = (x - i, y - j, i as usize, j as usize);
+        let low = (1.0 - u) * self.at([i, j]) + u * self.at([i + 1, j]);
+        let high = (1.0 - u) * self.at([i, j + 1]) + u * self.at([i + 1, j + 1]);
+        let d = (1.0 - v) * low + v * high;
+        if d.is_nan() { f64::INFINITY } else { d }
+    }
 }
 
 /// Room for one line: the parabolas of its lower envelope, and where each begins to be the lowest.

@@ -7,12 +7,10 @@ use crate::{
     scan::Beam,
 };
 
-/// What a beam adds to the odds of the cell in which it ends, and of those that it goes through. A cell counts once a scan,
-/// as what it ends in if anything does.
+/// What a scan adds to the odds of a cell in which beams end, and of one that they go through. A cell counts once a scan: as the
+/// more of its beams say. Where beams end on both sides of the edge of a cell, the cell in front does not fill.
 const HIT: f32 = 0.9;
 const MISS: f32 = -0.4;
-/// A beam says nothing of so many cells before its end: the pose is not known better.
-const BLUR: f64 = 1.0;
 
 /// The grid after a scan from a pose. Beams count as far as `reach`, also those that met nothing.
 pub fn observe(grid: &Grid, from: Place, scan: &[Beam], reach: f64) -> Grid {
@@ -21,31 +19,34 @@ pub fn observe(grid: &Grid, from: Place, scan: &[Beam], reach: f64) -> Grid {
         return out;
     }
     let layout = grid.layout;
-    // What the scan says of each cell: nothing, free, occupied.
-    let mut said = vec![0_u8; layout.cells()];
+    // How many beams end in each cell, and how many go through.
+    let mut said = vec![[0_u16; 2]; layout.cells()];
     let mut touched: Vec<usize> = Vec::new();
-    let mut say = |index: usize, what: u8| {
+    let mut say = |index: usize, what: usize| {
         if let Some(s) = said.get_mut(index) {
-            if *s == 0 {
+            if *s == [0; 2] {
                 touched.push(index);
             }
-            *s = (*s).max(what);
+            s[what] = s[what].saturating_add(1);
         }
     };
     for beam in scan.iter().filter(|b| b.is_sound()) {
         let (s, c) = libm::sincos(from.yaw + beam.bearing);
         let end = |r: f64| [from.at[0] + r * c, from.at[1] + r * s];
         let met = beam.range.filter(|r| *r <= reach);
-        let free = met.map_or(reach, |r| (r - BLUR * layout.cell).max(0.0));
-        for cell in Along::new(layout.position(from.at), layout.position(end(free)), layout.size) {
-            say(layout.index(cell), 1);
+        let to = met.unwrap_or(reach);
+        let last = met.and_then(|r| layout.cell_of(end(r)));
+        for cell in Along::new(layout.position(from.at), layout.position(end(to)), layout.size) {
+            if Some(cell) != last {
+                say(layout.index(cell), 1);
+            }
         }
-        if let Some(cell) = met.and_then(|r| layout.cell_of(end(r))) {
-            say(layout.index(cell), 2);
+        if let Some(cell) = last {
+            say(layout.index(cell), 0);
         }
     }
     for index in touched {
-        let change = if said.get(index) == Some(&2) { HIT } else { MISS };
+        let change = if said.get(index).is_some_and(|s| s[0] >= s[1]) { HIT } else { MISS };
         if let Some(odds) = out.odds.get_mut(index) {
             *odds = (*odds + change).clamp(-MOST_ODDS, MOST_ODDS);
         }

@@ -137,6 +137,7 @@ impl Env for AgentEnv<'_, '_> {
             made: &mut self.log.made,
             instance: self.instance,
             scene: self.instant.scene,
+            truth: false,
         };
         services.call(which, args, &mut shelf, out)
     }

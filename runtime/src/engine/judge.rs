@@ -113,7 +113,9 @@ impl Env for Court<'_> {
         let services = self.mission.services().ok_or(FaultKind::Unavailable("a service"))?;
         // Like an agent behind the last one: what it makes has numbers of its own.
         let instance = self.cast.instances.len() as u32;
-        let mut shelf = AgentShelf { store: self.store, made: &mut self.made, instance, scene: self.scene };
+        let truth = self.truth.is_some();
+        let mut shelf =
+            AgentShelf { store: self.store, made: &mut self.made, instance, scene: self.scene, truth };
         services.call(which, args, &mut shelf, out)
     }
 

@@ -82,6 +82,8 @@ pub(crate) struct AgentShelf<'a> {
     pub made: &'a mut Vec<Made>,
     pub instance: u32,
     pub scene: &'a Scene,
+    /// Whether it is for a judgement.
+    pub truth: bool,
 }
 
 impl Shelf for AgentShelf<'_> {
@@ -99,6 +101,10 @@ impl Shelf for AgentShelf<'_> {
     }
 
     fn mapped(&self) -> Vec<&Part> {
-        objects::mapped(self.scene)
+        objects::standing(self.scene, false)
+    }
+
+    fn standing(&self) -> Option<Vec<&Part>> {
+        self.truth.then(|| objects::standing(self.scene, true))
     }
 }

@@ -43,6 +43,7 @@ pub fn computes(which: Function) -> bool {
     matches!(
         which,
         F::KnownMap
+            | F::TrueMap
             | F::EmptyMap
             | F::Observe
             | F::Localise
@@ -62,6 +63,12 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
         Function::KnownMap => {
             let [resolution] = args.take()?;
             let made = Map::known(&shelf.mapped(), resolution);
+            out.optional(made.map(|m| [shelf.put(Arc::new(m))]))
+        }
+        Function::TrueMap => {
+            let [resolution] = args.take()?;
+            let parts = shelf.standing().ok_or(FaultKind::Unavailable("world truth"))?;
+            let made = Map::known(&parts, resolution);
             out.optional(made.map(|m| [shelf.put(Arc::new(m))]))
         }
         Function::EmptyMap => {

@@ -32,6 +32,7 @@ impl Compiler<'_> {
             | F::Diverging
             | F::CourseAhead
             | F::KnownMap
+            | F::TrueMap
             | F::EmptyMap
             | F::Observe
             | F::Localise
