@@ -92,20 +92,17 @@ impl Grid {
         Grid { layout, odds: vec![0.0; layout.cells()] }
     }
 
-    /// A grid that is free but for these shapes. A cell counts when a shape comes nearer to its middle than half its side, so
-    /// that thin walls have no holes.
+    /// A grid that is free but for these shapes. A cell counts when its middle lies in a shape; what is thinner than a cell is
+    /// taken to be as thick as one, so that thin walls have no holes.
     pub fn known(layout: Layout, shapes: &[Shape]) -> Grid {
         let mut grid = Grid { layout, odds: vec![KNOWN[1]; layout.cells()] };
-        for shape in shapes {
+        for shape in shapes.iter().map(|s| s.at_least(layout.cell)) {
             let [low, high] = shape.bounds();
-            let reach = 0.5 * layout.cell;
-            let first =
-                layout.position([low[0] - reach, low[1] - reach]).map(|x| x.floor().max(0.0) as usize);
-            let last =
-                layout.position([high[0] + reach, high[1] + reach]).map(|x| x.ceil().max(0.0) as usize);
+            let first = layout.position(low).map(|x| x.floor().max(0.0) as usize);
+            let last = layout.position(high).map(|x| x.ceil().max(0.0) as usize);
             for y in first[1]..last[1].min(layout.size[1]) {
                 for x in first[0]..last[0].min(layout.size[0]) {
-                    if shape.distance(layout.centre([x, y])) < reach
+                    if shape.distance(layout.centre([x, y])) <= 0.0
                         && let Some(odds) = grid.odds.get_mut(layout.index([x, y]))
                     {
                         *odds = KNOWN[0];

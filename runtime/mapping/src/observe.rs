@@ -7,8 +7,8 @@ use crate::{
     scan::Beam,
 };
 
-/// What a scan adds to the odds of a cell in which beams end, and of one that they go through. A cell counts once a scan: as the
-/// more of its beams say. Where beams end on both sides of the edge of a cell, the cell in front does not fill.
+/// What a scan adds to the odds of a cell in which beams end, and of one that they go through. A cell counts once a scan: it
+/// fills when more beams end in it than go through.
 const HIT: f32 = 0.9;
 const MISS: f32 = -0.4;
 
@@ -46,7 +46,7 @@ pub fn observe(grid: &Grid, from: Place, scan: &[Beam], reach: f64) -> Grid {
         }
     }
     for index in touched {
-        let change = if said.get(index).is_some_and(|s| s[0] >= s[1]) { HIT } else { MISS };
+        let change = if said.get(index).is_some_and(|s| s[0] > s[1]) { HIT } else { MISS };
         if let Some(odds) = out.odds.get_mut(index) {
             *odds = (*odds + change).clamp(-MOST_ODDS, MOST_ODDS);
         }

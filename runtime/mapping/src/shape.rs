@@ -34,6 +34,15 @@ impl Shape {
         Shape::block(at, [apart(a, b), thickness], yaw)
     }
 
+    /// The same, no thinner than that, m.
+    pub fn at_least(&self, thickness: f64) -> Shape {
+        let least = 0.5 * thickness;
+        match *self {
+            Shape::Disc { at, radius } => Shape::Disc { at, radius: radius.max(least) },
+            Shape::Block { place, half } => Shape::Block { place, half: half.map(|h| h.max(least)) },
+        }
+    }
+
     /// How far a point is from it, m; 0 inside.
     pub fn distance(&self, point: [f64; 2]) -> f64 {
         match self {
