@@ -163,7 +163,8 @@ fn a_scan_fits_where_it_was_taken() {
     let there = Place::new(2.3, 3.1, 0.35);
     let guess = Place::new(2.22, 3.17, 0.39);
     let found = match_scan(&field, &scan(there, &shapes()), guess, &Matching::default()).expect("a pose");
-    assert!(apart(found.at, there.at) < 0.03 && (found.yaw - there.yaw).abs() < 0.01, "{found:?}");
+    // Faces lie on edges of cells here: a grid of 5 cm can be off by half a cell along each axis.
+    assert!(apart(found.at, there.at) < 0.036 && (found.yaw - there.yaw).abs() < 0.01, "{found:?}");
     let elsewhere = Field::of(&Grid::unknown(layout()));
     let refused = match_scan(&elsewhere, &scan(there, &shapes()), guess, &Matching::default());
     assert_eq!(refused, Err(Why::NoMatch));
