@@ -1,8 +1,8 @@
 //! What agents pass around and never look into: images, and what services keep for later. It lies here, and
 //! registers hold its number.
 
-use crate::{Scene, Time};
-use soifra_graph::{Function, eval::FaultKind};
+use crate::{Scene, Time, scene::Part};
+use soifra_graph::{Function, Value, eval::FaultKind};
 use std::{any::Any, fmt::Debug, sync::Arc};
 
 /// Something that only services look into. It never changes.
@@ -113,4 +113,18 @@ pub trait Shelf {
     fn get(&self, register: f64) -> Option<Arc<dyn Object>>;
     /// Keeps an object; the register for it. It stays as long as a state of an agent means it.
     fn put(&mut self, object: Arc<dyn Object>) -> f64;
+    /// What of the world is on the map that missions may know: bounds, and the walls and obstacles that are `mapped`.
+    fn mapped(&self) -> Vec<&Part>;
+    /// The same of all walls and obstacles that there are: for judgements, nothing for agents.
+    fn standing(&self) -> Option<Vec<&Part>>;
+}
+
+/// Bounds, walls and obstacles of a scene; all, or those on the map.
+pub(crate) fn standing(scene: &Scene, all: bool) -> Vec<&Part> {
+    let stands = |p: &&Part| match &*p.role {
+        "bounds" => true,
+        "wall" | "obstacle" => all || p.args.get("mapped") != Some(&Value::Bool(false)),
+        _ => false,
+    };
+    scene.world.iter().filter(stands).collect()
 }

@@ -1,5 +1,6 @@
 //! What missions call services for: functions that the runtime's machine does not compute itself.
 
+mod mapping;
 #[cfg(feature = "vision")]
 mod vision;
 
@@ -26,6 +27,7 @@ impl Services for Everything {
                 *out = brightness(frame);
                 Ok(())
             }
+            (which, args, out) if mapping::computes(which) => mapping::call(which, args, shelf, out),
             #[cfg(feature = "vision")]
             (which, args, out) => vision::call(which, args, shelf, out),
             #[cfg(not(feature = "vision"))]
@@ -44,6 +46,7 @@ pub fn missing(graph: &Graph) -> Vec<Diagnostic> {
         if let Op::Builtin(f) = e.op
             && f.is_service()
             && f != Function::Brightness
+            && !mapping::computes(f)
         {
             let name = &f.signature().name;
             out.push(

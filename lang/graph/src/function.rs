@@ -81,6 +81,17 @@ functions! {
     Diverging "diverging(sight: Sight) -> Bool?" "Whether the flows of the first obstacle's sides do not meet (the published test of a collision course)";
     CourseAhead "course_ahead(sight: Sight, radius: Length = 0, least: Angle = 0) -> CourseAhead?" "What going straight on leads to, for the body and margin that `look` was told, and how far to turn, on a curve of that radius and by that much at least, for a free way";
     NearestPairAhead "nearest_pair_ahead(sight: Sight) -> CourseAhead?" "The same by the published detection (SOIFRA, Algorithm 1): the nearest upright edge on each side of the optical centre, a collision when their flows between two images do not meet, the distance by the focus of expansion of that flow (Eq. 4), and more room on the side where the pair is not. Of clearance and turns it says nothing: they are 0";
+    KnownMap "known_map(resolution: Length = 5 cm) -> OccupancyGrid?" "The walls and obstacles of the world that are on the map, over its bounds, as a grid with cells of that side; none without bounds";
+    TrueMap "true_map(resolution: Length = 5 cm) -> OccupancyGrid?" "The same of all walls and obstacles that there are: truth, for `done`, `expect` and `metric` only";
+    EmptyMap "empty_map(low: Point<map>, high: Point<map>, resolution: Length = 5 cm) -> OccupancyGrid?" "A grid over a rectangle of which nothing is known";
+    Observe "observe(grid: OccupancyGrid, at: Pose<map>, scan: List<Beam, N>, reach: Length = 30 m) -> OccupancyGrid" "The grid after a scan from that pose: what beams went through is more likely free, what they ended in more likely occupied (Probabilistic Robotics, Table 9.1)";
+    Localise "localise(before: Particles?, start: Pose<map>, odometry: Pose<odom>, scan: List<Beam, N>, grid: OccupancyGrid, random: Number, count: Int = 400, spread: Length = 20 cm, turn_spread: Angle = 5 deg) -> Particles?" "Where the robot may be on a map: particles that are moved by odometry and weighed by a scan (Monte Carlo localisation, Probabilistic Robotics, Table 8.2); at first `count` of them, spread about `start`. `random` is a number drawn anew for each call";
+    Located "located(particles: Particles) -> Located" "What particles come to: mean pose, where the frame of odometry begins, and how sure that is";
+    MatchScan "match_scan(grid: OccupancyGrid, guess: Pose<map>, scan: List<Beam, N>, window: Length = 16 cm, turn_window: Angle = 4 deg) -> Pose<map>?" "The pose near a guess at which a scan fits a grid best (correlative scan matching, Olson 2009)";
+    PlanPath "plan_path(grid: OccupancyGrid, from: Point<map>, to: Point<map>, clearance: Length, comfort: Length = 50 cm) -> Path?" "The cheapest way over a grid that keeps `clearance` from all that is occupied (A*), smoothed; where there is room it keeps `comfort` more. What is unknown counts as free";
+    Track "track(path: Path, at: Pose<map>, lookahead: Length) -> Tracking" "How far a pose is off a path, and the arc back to the point of it that is `lookahead` beyond the nearest (pure pursuit, Coulter 1992)";
+    FreeWay "free_way(path: Path, grid: OccupancyGrid, at: Point<map>, clearance: Length) -> Length" "How far a path is free from the point of it that is nearest to `at`: to where something occupied is nearer than `clearance`, or to its end";
+    MapOverlap "map_overlap(a: OccupancyGrid, b: OccupancyGrid) -> Number" "Intersection over union of what is not free in two grids, over the ground of the first, 0 to 1: of cells that are occupied or of which nothing is known";
     Within "within<D>(x: Quantity<D>, range: Range<D>) -> Bool" "Whether a quantity is in a range";
 }
 
@@ -96,9 +107,15 @@ impl Function {
     }
 
     /// Whether it is computed by a service of the runtime's surroundings, such as a library for images, and not by
-    /// the machine itself: whatever takes an opaque value, since only services look into one.
+    /// the machine itself: whatever takes or gives an opaque value, since only services look into one.
     pub fn is_service(self) -> bool {
-        self.signature().parameters.iter().any(|p| p.pattern.is_opaque())
+        let s = self.signature();
+        s.result.is_opaque() || s.parameters.iter().any(|p| p.pattern.is_opaque())
+    }
+
+    /// Whether it tells the truth about the world, which no behaviour can know.
+    pub fn is_truth(self) -> bool {
+        self == Function::TrueMap
     }
 
     /// Whether two calls with the same arguments may give different values.

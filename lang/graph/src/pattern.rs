@@ -67,9 +67,14 @@ fn settle(p: Pattern) -> Option<Type> {
 }
 
 impl Pattern {
-    /// Whether it is an opaque type, whose values only services look into.
+    /// Whether it is an opaque type, or an optional of one: only services look into its values.
     pub fn is_opaque(&self) -> bool {
-        matches!(self, Pattern::Exact(Type::Handle(name)) if OPAQUE.contains(&&**name))
+        let is = |t: &Type| matches!(t, Type::Handle(name) if OPAQUE.contains(&&**name));
+        match self {
+            Pattern::Exact(Type::Option(inner)) => is(inner),
+            Pattern::Exact(t) => is(t),
+            _ => false,
+        }
     }
 
     /// Parses a pattern such as `List<Point<F>, N>`.

@@ -52,6 +52,12 @@ pub const REASONS: &[&str] = &[
     "speed zero",
     "speed unknown",
     "OpenCV refused",
+    "a map of too many cells",
+    "the world has no bounds",
+    "the start is not free",
+    "the target is not free",
+    "no way",
+    "the scan does not fit the map",
     "unknown",
 ];
 

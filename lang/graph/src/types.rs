@@ -95,6 +95,14 @@ impl Type {
         }
     }
 
+    /// Whether readings or commands of this type can be handed to a port of type `port`: the same type, or a shorter list.
+    pub fn serves(&self, port: &Type) -> bool {
+        match (self, port) {
+            (Type::List(a, n), Type::List(b, m)) => a == b && n <= m,
+            _ => self == port,
+        }
+    }
+
     /// As [`Type::fits`], for parts whose register layout must be equal.
     fn fits_inside(&self, wanted: &Type) -> bool {
         self == wanted || (*self == Type::Int && *wanted == Type::NUMBER)
@@ -143,7 +151,7 @@ impl TryFrom<String> for Type {
 }
 
 /// Types whose values are passed around and never looked into: only services can.
-pub const OPAQUE: [&str; 2] = ["Image", "Sight"];
+pub const OPAQUE: [&str; 5] = ["Image", "Sight", "OccupancyGrid", "Particles", "Path"];
 
 /// A record: named fields in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 
 use super::walk;
 use crate::{code, decls::unknown};
-use soifra_graph::{Agent, AgentBinding, Diagnostic, Graph, Op, Own, Platform, Port, RobotGroup, Type};
+use soifra_graph::{Agent, AgentBinding, Diagnostic, Graph, Op, Own, Platform, Port, RobotGroup};
 
 /// Checks every robot against its platform, and every platform by itself.
 pub fn check(g: &Graph) -> Vec<Diagnostic> {
@@ -179,7 +179,7 @@ fn port_on(
         None => {
             let same: Vec<&str> = p
                 .of_role(role)
-                .filter(|c| c.ty.as_ref().is_some_and(|t| fits(t, &port.ty)))
+                .filter(|c| c.ty.as_ref().is_some_and(|t| t.serves(&port.ty)))
                 .map(|c| &*c.name)
                 .collect();
             let all: Vec<&str> = p.of_role(role).map(|c| &*c.name).collect();
@@ -199,7 +199,7 @@ fn port_on(
         }
         Some(c) => {
             let Some(have) = &c.ty else { return };
-            if !fits(have, &port.ty) {
+            if !have.serves(&port.ty) {
                 out.push(
                     Diagnostic::error(
                         code::PORT_TYPE,
@@ -215,13 +215,5 @@ fn port_on(
                 );
             }
         }
-    }
-}
-
-/// Whether readings of type `have` can be handed to a port of type `want`.
-pub(crate) fn fits(have: &Type, want: &Type) -> bool {
-    match (have, want) {
-        (Type::List(a, n), Type::List(b, m)) => a == b && n <= m,
-        _ => have == want,
     }
 }

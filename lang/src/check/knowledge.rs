@@ -52,6 +52,12 @@ fn look(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
     e.walk(&mut |e| one(e, kind, out));
 }
 
+fn truth(e: &Expr) -> Diagnostic {
+    Diagnostic::error(code::TRUTH, "a behaviour cannot know the world's truth")
+        .at(e.span, "truth is for `done`, `expect` and `metric`")
+        .hint("read a sensor the platform declares, or let others publish what they know on a topic")
+}
+
 fn one(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
     match &e.op {
         Op::Truth(_)
@@ -60,11 +66,8 @@ fn one(e: &Expr, kind: Kind, out: &mut Vec<Diagnostic>) {
         | Op::Executed(..)
         | Op::Achieved(_)
         | Op::Quantified(_)
-        | Op::OfRobot(_) => out.push(
-            Diagnostic::error(code::TRUTH, "a behaviour cannot know the world's truth")
-                .at(e.span, "truth is for `done`, `expect` and `metric`")
-                .hint("read a sensor the platform declares, or let others publish what they know on a topic"),
-        ),
+        | Op::OfRobot(_) => out.push(truth(e)),
+        Op::Builtin(f) if f.is_truth() => out.push(truth(e)),
         Op::Builtin(Function::Draw) if matches!(kind, Kind::Start | Kind::Belief) => out.push(
             Diagnostic::error(code::RANDOM, "nothing can be drawn here")
                 .at(e.span, "would differ from evaluation to evaluation")

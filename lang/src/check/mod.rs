@@ -32,7 +32,6 @@ mod types;
 pub mod walk;
 
 pub use allocation::{Allotted, allocation};
-pub(crate) use capability::fits;
 pub(crate) use constants::{Constants, not_computable};
 pub(crate) use ranges::wrong_period;
 

@@ -1,9 +1,7 @@
 //! Robots and the platforms they are instances of.
 
 use crate::{
-    ast,
-    check::fits,
-    code,
+    ast, code,
     decls::unknown,
     typed::{Body, Checker, Place},
 };
@@ -206,7 +204,7 @@ impl<'a> Checker<'a> {
             let ports = ports.chain(a.actuators.iter().map(|s| ("actuator", s)));
             let lacks = ports.into_iter().find(|(role, port)| {
                 let has = p.of_role(role).find(|c| c.name == port.name);
-                !has.and_then(|c| c.ty.as_ref()).is_some_and(|t| fits(t, &port.ty))
+                !has.and_then(|c| c.ty.as_ref()).is_some_and(|t| t.serves(&port.ty))
             });
             if let Some((role, port)) = lacks {
                 out.push(Unfit { agent: b.agent, role: role.into(), port: port.name.clone(), at: b.at });

@@ -109,6 +109,10 @@ impl Checker<'_> {
             );
             return None;
         }
+        if b.is_truth() && self.body.place != Place::Truth {
+            self.truth_refused(span);
+            return None;
+        }
         let s = b.signature();
         let (args, bindings) = self.bind_arguments(s, f, given, span, want)?;
         let args = args.into_iter().map(|(_, e)| e).collect();

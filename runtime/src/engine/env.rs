@@ -92,12 +92,12 @@ impl Env for AgentEnv<'_, '_> {
             (true, Ok(value)) => {
                 let (tag, rest) = out.split_first_mut().ok_or(FaultKind::Malformed)?;
                 *tag = 0.0;
-                return fill(rest, value);
+                return hand_over(rest, value);
             }
             (false, Ok(value)) => value,
             (false, Err(_)) => return Err(FaultKind::Unavailable("a reading")),
         };
-        fill(out, value)
+        hand_over(out, value)
     }
 
     fn heard(&mut self, topic: u32, out: &mut [f64]) -> Result<(), FaultKind> {
@@ -132,8 +132,13 @@ impl Env for AgentEnv<'_, '_> {
 
     fn service(&mut self, which: Function, args: &[f64], out: &mut [f64]) -> Result<(), FaultKind> {
         let services = self.instant.mission.services().ok_or(FaultKind::Unavailable("a service"))?;
-        let mut shelf =
-            AgentShelf { store: self.instant.store, made: &mut self.log.made, instance: self.instance };
+        let mut shelf = AgentShelf {
+            store: self.instant.store,
+            made: &mut self.log.made,
+            instance: self.instance,
+            scene: self.instant.scene,
+            truth: false,
+        };
         services.call(which, args, &mut shelf, out)
     }
 
@@ -192,11 +197,11 @@ impl Env for AgentEnv<'_, '_> {
     }
 }
 
-fn fill(out: &mut [f64], value: &[f64]) -> Result<(), FaultKind> {
-    if out.len() != value.len() {
-        return Err(FaultKind::Malformed);
-    }
-    copy_registers(value, out);
+/// A reading for a port: the port's list may have room for more items than the sensor has.
+fn hand_over(out: &mut [f64], value: &[f64]) -> Result<(), FaultKind> {
+    let (front, rest) = out.split_at_mut_checked(value.len()).ok_or(FaultKind::Malformed)?;
+    copy_registers(value, front);
+    rest.fill(0.0);
     Ok(())
 }
 

@@ -489,6 +489,8 @@ impl Engine<'_> {
             contacts: &self.contacts,
             goals: &self.goals,
             regions: &self.regions,
+            store: &self.store,
+            made: Vec::new(),
             now,
             robot: None,
         }

@@ -7,6 +7,7 @@ use super::{
     goals::Goals,
     regions::Regions,
     sampled::Gathered,
+    store::{AgentShelf, Made, Store},
     verdict::{Answer, Track},
 };
 use crate::{
@@ -14,7 +15,7 @@ use crate::{
     mission::{code::Condition, start},
 };
 use soifra_graph::{
-    Execution, Own, Run, Truth,
+    Execution, Function, Own, Run, Truth,
     eval::{Block, Env, Fault, FaultKind, Memory},
 };
 
@@ -30,6 +31,9 @@ pub(crate) struct Court<'a> {
     pub contacts: &'a Contacts,
     pub goals: &'a Goals,
     pub regions: &'a Regions,
+    pub store: &'a Store,
+    /// Objects that were made meanwhile: for what is judged now, and no longer.
+    pub made: Vec<Made>,
     pub now: Time,
     pub robot: Option<u32>,
 }
@@ -103,6 +107,16 @@ impl Env for Court<'_> {
             Execution::Misses => tally.misses as f64,
             Execution::Response => tally.response.seconds(),
         })
+    }
+
+    fn service(&mut self, which: Function, args: &[f64], out: &mut [f64]) -> Result<(), FaultKind> {
+        let services = self.mission.services().ok_or(FaultKind::Unavailable("a service"))?;
+        // Like an agent behind the last one: what it makes has numbers of its own.
+        let instance = self.cast.instances.len() as u32;
+        let truth = self.truth.is_some();
+        let mut shelf =
+            AgentShelf { store: self.store, made: &mut self.made, instance, scene: self.scene, truth };
+        services.call(which, args, &mut shelf, out)
     }
 
     fn achieved(&self, goal: u32) -> Result<bool, FaultKind> {

@@ -1,6 +1,10 @@
 //! Keeps the objects of a run as long as a state or a reading means them.
 
-use crate::objects::{Object, Shelf};
+use crate::{
+    Scene,
+    objects::{self, Object, Shelf},
+    scene::Part,
+};
 use std::{
     collections::{BTreeMap, BTreeSet},
     sync::Arc,
@@ -77,6 +81,9 @@ pub(crate) struct AgentShelf<'a> {
     pub store: &'a Store,
     pub made: &'a mut Vec<Made>,
     pub instance: u32,
+    pub scene: &'a Scene,
+    /// Whether it is for a judgement.
+    pub truth: bool,
 }
 
 impl Shelf for AgentShelf<'_> {
@@ -91,5 +98,13 @@ impl Shelf for AgentShelf<'_> {
         let number = number(self.instance + 1, before.wrapping_add(since).wrapping_add(1));
         self.made.push(Made { instance: self.instance, number, object });
         number as f64
+    }
+
+    fn mapped(&self) -> Vec<&Part> {
+        objects::standing(self.scene, false)
+    }
+
+    fn standing(&self) -> Option<Vec<&Part>> {
+        self.truth.then(|| objects::standing(self.scene, true))
     }
 }

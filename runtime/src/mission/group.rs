@@ -38,7 +38,8 @@ pub(super) fn group(c: &mut Compiler<'_>, graph: &Graph, g: &RobotGroup) -> Comp
             binding.arguments.push(alone_as(c, e, &[Type::Int], ty)?);
         }
         for port in &agent.sensors {
-            let fits = |s: &&Component| s.name == port.name && s.ty.as_ref() == Some(&port.ty);
+            let fits =
+                |s: &&Component| s.name == port.name && s.ty.as_ref().is_some_and(|t| t.serves(&port.ty));
             let Some(s) = sensors.iter().position(fits) else {
                 return damaged(
                     port.span,

@@ -31,7 +31,18 @@ impl Compiler<'_> {
             | F::ContactByRobustFlow
             | F::Diverging
             | F::CourseAhead
-            | F::NearestPairAhead => self.gen_service(e, f, dest),
+            | F::NearestPairAhead
+            | F::KnownMap
+            | F::TrueMap
+            | F::EmptyMap
+            | F::Observe
+            | F::Localise
+            | F::Located
+            | F::MatchScan
+            | F::PlanPath
+            | F::Track
+            | F::FreeWay
+            | F::MapOverlap => self.gen_service(e, f, dest),
             F::Draw | F::Inside => self.gen_env_function(e, f, dest),
             F::Norm | F::Distance => {
                 self.check_call(e, f)?;
