@@ -4,6 +4,8 @@ export PATH := $(PATH):$(HOME)/.cargo/bin
 SOIFRA := target/release/soifra
 MISSION ?= missions/soifra/room.soi
 SEED ?= 1
+# What the start of the program is measured with.
+SHORT := missions/khepera/sim1.soi
 
 .PHONY: help setup build run test results bench fmt lint docs clean
 

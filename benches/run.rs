@@ -8,7 +8,12 @@ use std::{
 };
 
 /// A short mission: what counts here is what a process costs beside the simulation.
-const SHORT: &str = "missions/khepera/sim1.soi";
+fn short() -> String {
+    let makefile = std::fs::read_to_string(support::project("Makefile")).expect("the Makefile");
+    let line =
+        makefile.lines().find_map(|l| l.strip_prefix("SHORT := ")).expect("a short mission in the Makefile");
+    support::project(line.trim())
+}
 
 /// Seconds that the program takes with these arguments.
 fn process(arguments: &[&str]) -> f64 {
@@ -24,7 +29,7 @@ fn process(arguments: &[&str]) -> f64 {
 
 fn main() {
     let mut criterion = support::criterion().sample_size(50);
-    let mission = support::project(SHORT);
+    let mission = short();
     let trace = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("short.mcap");
     let trace = trace.to_string_lossy();
     let run = || process(&["run", &mission, "--trace", &trace]);

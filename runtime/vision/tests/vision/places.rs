@@ -132,7 +132,7 @@ fn the_range_that_was_known_best_counts() {
     let now = moment(0.0);
     let edges = [[3.0, 0.4], [3.0, -0.5]];
     let good = obstacle(&now, edges, 0.01);
-    let known = remember(&[], &[good.clone()], &now, (0.05, true), (&lens(), WIDTH), &how);
+    let known = remember(&[], std::slice::from_ref(&good), &now, (0.05, true), (&lens(), WIDTH), &how);
     let told = known[0].contact(&now, how.recent).unwrap();
     assert!((told - 6.0).abs() < 0.01, "3 m at 0.5 m/s: {told}");
     // A worse one a little later, off by a second, says nothing against it.
@@ -140,7 +140,7 @@ fn the_range_that_was_known_best_counts() {
     let mut worse = good.clone();
     worse.contact.ttc = 5.0;
     worse.contact.sigma = 0.3;
-    let next = remember(&known, &[worse.clone()], &later, (0.2, true), (&lens(), WIDTH), &how);
+    let next = remember(&known, std::slice::from_ref(&worse), &later, (0.2, true), (&lens(), WIDTH), &how);
     assert!((next[0].contact(&later, how.recent).unwrap() - 5.8).abs() < 0.01);
     // A better one does.
     let better = Obstacle { contact: Expansion { sigma: 0.001, ..worse.contact }, ..worse.clone() };
@@ -159,7 +159,7 @@ fn a_known_obstacle_in_full_view_that_is_not_seen_is_forgotten() {
     let seen = obstacle(&now, [[3.0, 0.4], [3.0, -0.5]], 0.01);
     let mut known = Vec::new();
     for _ in 0..how.fewest {
-        known = remember(&known, &[seen.clone()], &now, (0.05, true), (&lens(), WIDTH), &how);
+        known = remember(&known, std::slice::from_ref(&seen), &now, (0.05, true), (&lens(), WIDTH), &how);
     }
     assert!(known[0].is_sure(&how));
     let met = known[0].met(&now, &Lane { left: 0.3, right: -0.3 }).unwrap();
