@@ -96,7 +96,7 @@ pub struct Remembering {
     /// An edge by itself is believed when there is another one so near, metres.
     pub company: f64,
     /// Most edges by themselves remembered.
-    pub most_posts: usize,
+    pub most_landmarks: usize,
     /// For how long the time to contact with what is not seen is told, s.
     pub recent: f64,
     /// Most obstacles remembered.
@@ -118,7 +118,7 @@ impl Default for Remembering {
             beside: 6.0,
             hidden: 1.0,
             company: 0.4,
-            most_posts: 128,
+            most_landmarks: 128,
             recent: 0.3,
             most: 16,
         }

@@ -11,7 +11,7 @@
 //! | how do they move, which of them are obstacles? | `follow`, `sweep`, `obstacle` |
 //! | how do points on the obstacle move? | `points` |
 //! | how long until contact? | `flow`, `robust`, `expansion` |
-//! | where does it stand once it is out of sight? | `known`, `posts` |
+//! | where does it stand once it is out of sight? | `known`, `landmarks` |
 //! | is it in the way, on which side is more room? | `course`, `turning` |
 //! | all of it on a frame | `look` |
 //! | pictures for people | `overlay` |
@@ -33,12 +33,12 @@ pub mod flow;
 pub mod follow;
 pub mod image;
 pub mod known;
+pub mod landmarks;
 pub mod lens;
 pub mod look;
 pub mod obstacle;
 pub mod overlay;
 pub mod points;
-pub mod posts;
 pub mod reckoning;
 pub mod rectify;
 pub mod refine;

@@ -6,10 +6,10 @@ use crate::edge::{Edge, nearest_pair};
 use crate::follow::{EdgeTrack, Following, Moment, follow};
 use crate::image::{Gray, ImageView};
 use crate::known::{Known, Remembering, remember};
+use crate::landmarks::{Landmark, landmarks, remember_landmarks};
 use crate::lens::Lens;
 use crate::obstacle::{Obstacle, Pairing, obstacles};
 use crate::points::{self, Flow};
-use crate::posts::{Post, posts, remember_posts};
 use crate::refine::{Refinement, refine};
 use crate::robust::PointTrack;
 use crate::why::Why;
@@ -45,7 +45,7 @@ pub struct Memory {
     /// Where obstacles stand.
     pub known: Vec<Known>,
     /// Where edges by themselves stand.
-    pub posts: Vec<Post>,
+    pub landmarks: Vec<Landmark>,
 }
 
 /// What is seen in a frame.
@@ -127,10 +127,10 @@ pub fn look_at(
         let doubting = (interval, *speed > 0.5 * moment.pace);
         remember(&memory.known, obstacles, moment, doubting, (lens, image.width()), remembering)
     });
-    let posts = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
-        let placed = posts(&edges, moment, lens, remembering.doubtful, &how.pairing);
+    let landmarks = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
+        let placed = landmarks(&edges, moment, lens, remembering.doubtful, &how.pairing);
         let doubting = (interval, *speed > 0.5 * moment.pace);
-        remember_posts(&memory.posts, placed, moment, doubting, (lens, image.width()), remembering)
+        remember_landmarks(&memory.landmarks, placed, moment, doubting, (lens, image.width()), remembering)
     });
     let (first, contact) = first(&found, &known, moment, how);
     if let Some(first) = first.ok().and_then(|i| obstacles.get(i)) {
@@ -144,7 +144,7 @@ pub fn look_at(
         flows: points::flows(&followed),
     };
     let memory =
-        Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known, posts };
+        Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known, landmarks };
     Ok((seen, memory))
 }
 

@@ -9,9 +9,9 @@ use soifra_vision::{
     flow,
     follow::Moment,
     known::{self, Remembering},
+    landmarks::believed,
     look::{Memory, Seen},
     obstacle::Obstacle,
-    posts::believed,
     reckoning::{Stop, relative},
     rectify::Rectification,
     robust::{self, Part, Robust},
@@ -130,10 +130,10 @@ impl Sight {
         let need = self.body.half_width + self.body.margin;
         let how = Remembering::default();
         let known = self.memory.known.iter().filter(|k| k.is_sure(&how));
-        let posts = believed(&self.memory.posts, &how);
+        let landmarks = believed(&self.memory.landmarks, &how);
         let footprints: Vec<Footprint> = known
             .map(|k| k.footprint(place, now.course))
-            .chain(posts.iter().map(|p| [relative(*p, place, now.course); 4]))
+            .chain(landmarks.iter().map(|p| [relative(*p, place, now.course); 4]))
             .collect();
         let ahead = self.optics.ahead(self.slip());
         let reach = |f: &Footprint| known::reach(f, need, ahead, now.pace);

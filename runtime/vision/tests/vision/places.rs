@@ -7,8 +7,8 @@ use soifra_vision::edge::{Edge, Upright, seen};
 use soifra_vision::expansion::Expansion;
 use soifra_vision::follow::{EdgeSight, EdgeTrack, Moment};
 use soifra_vision::known::{Known, Remembering, remember};
+use soifra_vision::landmarks::{Landmark, believed, landmarks, remember_landmarks};
 use soifra_vision::obstacle::{Obstacle, Pairing, obstacles};
-use soifra_vision::posts::{Post, believed, posts, remember_posts};
 use soifra_vision::reckoning::relative;
 
 const WIDTH: usize = 640;
@@ -44,36 +44,36 @@ fn track(id: u32, edge: [f64; 2]) -> EdgeTrack {
     EdgeTrack { id, edge, missed: 0, sights }
 }
 
-fn placed(edges: &[[f64; 2]]) -> Vec<Post> {
+fn placed(edges: &[[f64; 2]]) -> Vec<Landmark> {
     let tracks: Vec<EdgeTrack> = (0..).zip(edges).map(|(id, e)| track(id, *e)).collect();
-    posts(&tracks, &moment(0.0), &lens(), 0.08, &Pairing::default())
+    landmarks(&tracks, &moment(0.0), &lens(), 0.08, &Pairing::default())
 }
 
 #[test]
 fn an_edge_beside_the_course_is_placed_and_one_ahead_is_not() {
     let found = placed(&[[2.0, 0.8], [3.0, -1.2], [3.0, 0.01]]);
     assert_eq!(found.iter().map(|p| p.id).collect::<Vec<_>>(), [0, 1]);
-    for (post, truth) in found.iter().zip([[2.0, 0.8], [3.0, -1.2]]) {
-        assert!((post.place[0] - truth[0]).abs() < 1e-6 && (post.place[1] - truth[1]).abs() < 1e-6);
-        assert!(post.sigma > 0.0 && post.sigma < 0.3, "{}", post.sigma);
+    for (landmark, truth) in found.iter().zip([[2.0, 0.8], [3.0, -1.2]]) {
+        assert!((landmark.place[0] - truth[0]).abs() < 1e-6 && (landmark.place[1] - truth[1]).abs() < 1e-6);
+        assert!(landmark.sigma > 0.0 && landmark.sigma < 0.3, "{}", landmark.sigma);
     }
 }
 
-fn post(id: u32, place: [f64; 2]) -> Post {
-    Post { id, place, sigma: 0.05, missed: 0.0 }
+fn landmark(id: u32, place: [f64; 2]) -> Landmark {
+    Landmark { id, place, sigma: 0.05, missed: 0.0 }
 }
 
-fn after(before: &[Post], now_placed: Vec<Post>, now: &Moment, interval: f64) -> Vec<Post> {
+fn after(before: &[Landmark], now_placed: Vec<Landmark>, now: &Moment, interval: f64) -> Vec<Landmark> {
     let how = Remembering::default();
-    remember_posts(before, now_placed, now, (interval, true), (&lens(), WIDTH), &how)
+    remember_landmarks(before, now_placed, now, (interval, true), (&lens(), WIDTH), &how)
 }
 
 #[test]
 fn what_is_out_of_sight_stays_and_what_should_show_and_does_not_goes() {
     let how = Remembering::default();
-    let beside = post(1, [0.2, 1.0]);
-    let ahead = post(2, [3.0, 0.5]);
-    let far = post(3, [-20.0, 0.0]);
+    let beside = landmark(1, [0.2, 1.0]);
+    let ahead = landmark(2, [3.0, 0.5]);
+    let far = landmark(3, [-20.0, 0.0]);
     let mut known = vec![beside, ahead, far];
     let frames = (how.doubt / 0.05).ceil() as u32 + 1;
     for _ in 0..frames {
@@ -83,12 +83,12 @@ fn what_is_out_of_sight_stays_and_what_should_show_and_does_not_goes() {
     // One that another edge confirms stays, and so does one that is doubted by a robot that stands.
     let mut known = vec![ahead];
     for k in 0..frames {
-        known = after(&known, vec![post(10 + k, [3.1, 0.5])], &moment(0.0), 0.05);
+        known = after(&known, vec![landmark(10 + k, [3.1, 0.5])], &moment(0.0), 0.05);
     }
     assert!(known.iter().any(|p| p.id == 2));
     let mut known = vec![ahead];
     for _ in 0..frames {
-        known = remember_posts(&known, vec![], &moment(0.0), (0.05, false), (&lens(), WIDTH), &how);
+        known = remember_landmarks(&known, vec![], &moment(0.0), (0.05, false), (&lens(), WIDTH), &how);
     }
     assert_eq!(known.len(), 1);
 }
@@ -96,25 +96,25 @@ fn what_is_out_of_sight_stays_and_what_should_show_and_does_not_goes() {
 #[test]
 fn the_better_place_of_an_edge_is_kept_and_one_alone_is_not_believed() {
     let how = Remembering::default();
-    let good = post(1, [2.0, 0.5]);
-    let worse = Post { sigma: 0.2, ..post(1, [2.1, 0.5]) };
+    let good = landmark(1, [2.0, 0.5]);
+    let worse = Landmark { sigma: 0.2, ..landmark(1, [2.1, 0.5]) };
     let known = after(&[good], vec![worse], &moment(0.0), 0.05);
     assert_eq!(known.len(), 1);
     assert_eq!(known[0].place, good.place);
     // Elsewhere altogether: the edge was mistaken for another.
-    let elsewhere = Post { sigma: 0.2, ..post(1, [4.0, 0.5]) };
+    let elsewhere = Landmark { sigma: 0.2, ..landmark(1, [4.0, 0.5]) };
     assert_eq!(after(&[good], vec![elsewhere], &moment(0.0), 0.05)[0].place, elsewhere.place);
     assert_eq!(believed(&[good], &how), Vec::<[f64; 2]>::new());
-    assert_eq!(believed(&[good, post(2, [2.0, 2.0])], &how), Vec::<[f64; 2]>::new());
-    assert_eq!(believed(&[good, post(2, [2.1, 0.6])], &how).len(), 2);
+    assert_eq!(believed(&[good, landmark(2, [2.0, 2.0])], &how), Vec::<[f64; 2]>::new());
+    assert_eq!(believed(&[good, landmark(2, [2.1, 0.6])], &how).len(), 2);
 }
 
 #[test]
 fn memory_is_bounded() {
     let how = Remembering::default();
-    let many: Vec<Post> = (0..1000).map(|k| post(k, [1.0 + 1e-3 * f64::from(k), 0.5])).collect();
+    let many: Vec<Landmark> = (0..1000).map(|k| landmark(k, [1.0 + 1e-3 * f64::from(k), 0.5])).collect();
     let known = after(&[], many, &moment(0.0), 0.05);
-    assert_eq!(known.len(), how.most_posts);
+    assert_eq!(known.len(), how.most_landmarks);
     assert_eq!(known[0].id, 0, "the nearest stay");
 }
 

@@ -13,7 +13,7 @@ use crate::sweep::{settled, sweep, tangents};
 
 /// An upright edge by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Post {
+pub struct Landmark {
     /// Number of its track.
     pub id: u32,
     /// Where it stands, metres in the level frame.
@@ -26,7 +26,13 @@ pub struct Post {
 
 /// The edges that can be placed by themselves as seen from `now`, each to a share `doubt` of its distance: those well off
 /// the course, seen for long.
-pub fn posts(tracks: &[EdgeTrack], now: &Moment, lens: &Lens, doubt: f64, how: &Pairing) -> Vec<Post> {
+pub fn landmarks(
+    tracks: &[EdgeTrack],
+    now: &Moment,
+    lens: &Lens,
+    doubt: f64,
+    how: &Pairing,
+) -> Vec<Landmark> {
     let noise = 0.03 / lens.fx;
     let (s, c) = libm::sincos(now.course);
     let placed = |track: &EdgeTrack| {
@@ -43,7 +49,7 @@ pub fn posts(tracks: &[EdgeTrack], now: &Moment, lens: &Lens, doubt: f64, how: &
         let place = [now.place[0] + z * c - x * s, now.place[1] + z * s + x * c];
         let sigma = libm::hypot(z, x) * off / sweep.closing;
         let known = place.iter().all(|v| v.is_finite()) && sigma.is_finite();
-        known.then_some(Post { id: track.id, place, sigma, missed: 0.0 })
+        known.then_some(Landmark { id: track.id, place, sigma, missed: 0.0 })
     };
     if !(now.is_finite() && now.pace > 0.0) {
         return Vec::new();
@@ -51,22 +57,22 @@ pub fn posts(tracks: &[EdgeTrack], now: &Moment, lens: &Lens, doubt: f64, how: &
     tracks.iter().filter(|t| t.missed == 0).filter_map(placed).collect()
 }
 
-/// What is known after a look, `interval` seconds after the last one: posts placed now, and those known before that are not
+/// What is known after a look, `interval` seconds after the last one: landmarks placed now, and those known before that are not
 /// far away or in doubt. `moves`: whether the robot moves enough to place anything.
-pub fn remember_posts(
-    before: &[Post],
-    placed: Vec<Post>,
+pub fn remember_landmarks(
+    before: &[Landmark],
+    placed: Vec<Landmark>,
     now: &Moment,
     (interval, moves): (f64, bool),
     (lens, width): (&Lens, usize),
     how: &Remembering,
-) -> Vec<Post> {
+) -> Vec<Landmark> {
     let mut out = placed;
     for old in before {
         if let Some(same) = out.iter_mut().find(|p| p.id == old.id) {
             // The place that is known best: later ones of an edge beside the body are worse.
             if old.sigma < same.sigma && apart(old, same) < 2.0 * (old.sigma + same.sigma) {
-                *same = Post { missed: 0.0, ..*old };
+                *same = Landmark { missed: 0.0, ..*old };
             }
             continue;
         }
@@ -83,20 +89,20 @@ pub fn remember_posts(
             out.push(old);
         }
     }
-    let near = |p: &Post| libm::hypot(p.place[0] - now.place[0], p.place[1] - now.place[1]);
+    let near = |p: &Landmark| libm::hypot(p.place[0] - now.place[0], p.place[1] - now.place[1]);
     out.retain(|p| near(p) < how.beside);
     out.sort_by(|a, b| near(a).total_cmp(&near(b)).then(a.id.cmp(&b.id)));
-    out.truncate(how.most_posts);
+    out.truncate(how.most_landmarks);
     out
 }
 
 /// The places of those that are not alone: an edge that was mistaken for another gives a place where nothing is, and hardly
 /// twice the same.
-pub fn believed(posts: &[Post], how: &Remembering) -> Vec<[f64; 2]> {
-    let company = |p: &Post| posts.iter().any(|q| q.id != p.id && apart(p, q) < how.company);
-    posts.iter().filter(|p| company(p)).map(|p| p.place).collect()
+pub fn believed(landmarks: &[Landmark], how: &Remembering) -> Vec<[f64; 2]> {
+    let company = |p: &Landmark| landmarks.iter().any(|q| q.id != p.id && apart(p, q) < how.company);
+    landmarks.iter().filter(|p| company(p)).map(|p| p.place).collect()
 }
 
-fn apart(a: &Post, b: &Post) -> f64 {
+fn apart(a: &Landmark, b: &Landmark) -> f64 {
     libm::hypot(a.place[0] - b.place[0], a.place[1] - b.place[1])
 }
