@@ -3,6 +3,7 @@
 
 mod blind;
 mod detection;
+mod objects;
 mod soifra;
 
 use crate::support::{code, files, folder, json, root, soifra, stderr};

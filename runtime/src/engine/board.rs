@@ -88,6 +88,11 @@ pub(crate) struct Near(Vec<Heard>);
 const FEW: usize = 12;
 
 impl Board {
+    /// Of all messages that are kept.
+    pub fn registers(&self) -> &[f64] {
+        &self.kept.registers
+    }
+
     /// A board for senders whose shortest period is `period`.
     pub fn new(
         seed: u64,

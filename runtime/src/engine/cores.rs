@@ -104,6 +104,14 @@ impl CoreState {
         true
     }
 
+    /// Registers that its jobs work with or have yet to hand out.
+    pub fn registers(&self) -> impl Iterator<Item = &[f64]> {
+        self.jobs.iter().flat_map(|j| {
+            let letter = j.letter.iter().map(|l| l.registers.as_slice());
+            letter.chain([j.log.registers.as_slice()]).chain(j.anytime.iter().map(|a| a.frame.as_slice()))
+        })
+    }
+
     /// Whether a snapshot of it can be one of this core.
     pub fn fits(&self, units: usize) -> bool {
         self.jobs

@@ -9,10 +9,7 @@ use super::{
     report::{INTERRUPTED, OVER, RunReport},
 };
 use crate::{Event, Reading, Report, Time, objects::Frame};
-use std::{
-    collections::BTreeSet,
-    sync::{Arc, atomic::Ordering},
-};
+use std::sync::{Arc, atomic::Ordering};
 
 /// The fewest activations at one instant that are too many.
 const TOO_MANY: usize = 1_000_000;
@@ -172,21 +169,6 @@ impl Engine<'_> {
             digest: format!("{:016x}", image.digest),
             view: image.view.clone(),
         })
-    }
-
-    /// Forgets images and other objects that no state and no reading means any more.
-    fn tidy_store(&mut self) {
-        if !self.store.has_grown() {
-            return;
-        }
-        let mut used: BTreeSet<u64> = self.senses.opaque().map(|x| x as u64).collect();
-        for who in &self.cast.instances {
-            let opaque = &self.mission.agents[who.agent as usize].opaque;
-            used.extend(
-                opaque.iter().filter_map(|at| self.minds.states.get(who.states + at)).map(|x| *x as u64),
-            );
-        }
-        self.store.tidy(&used);
     }
 
     /// Counts contacts and judges what asks for them, at the instants at which they began.

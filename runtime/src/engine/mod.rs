@@ -40,6 +40,7 @@ mod setup;
 pub(crate) mod snapshot;
 mod store;
 mod talks;
+mod tidy;
 mod troubles;
 mod verdict;
 mod work;

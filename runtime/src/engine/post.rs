@@ -60,6 +60,11 @@ impl Mail {
         self.0.get(unit as usize).is_some_and(|waiting| !waiting.is_empty())
     }
 
+    /// Letters that wait.
+    pub fn letters(&self) -> impl Iterator<Item = &Letter> {
+        self.0.iter().flatten().map(|d| d.letter.as_ref())
+    }
+
     /// What waits.
     pub fn waiting(&self) -> Waiting {
         let all = (0..).zip(&self.0).filter(|(_, waiting)| !waiting.is_empty());

@@ -76,6 +76,11 @@ pub(crate) struct Agenda {
 }
 
 impl Queue {
+    /// What was put off, in no order.
+    pub fn put_off(&self) -> impl Iterator<Item = &Scheduled> {
+        self.kept.iter().flatten()
+    }
+
     /// The future as it is now.
     pub fn agenda(&self) -> Agenda {
         let mut scheduled: Vec<_> = self.scheduled.iter().map(|Reverse(s)| *s).collect();
