@@ -17,7 +17,7 @@ use soifra_runtime::{
 };
 use soifra_vision::{
     Gray, ImageView, Lens,
-    contours::{Thresholds, thresholds},
+    contours::{Thresholds, derivatives, thresholds},
     follow::Moment,
     look::{Looking, Memory, look_at},
 };
@@ -59,6 +59,7 @@ impl TraceSink for Resident {
 /// What is done to a frame by bare calls.
 struct Bare {
     limits: (f64, f64),
+    derivatives: (Mat, Mat),
     points: Vector<Point2f>,
 }
 
@@ -71,6 +72,7 @@ fn bare_calls(frames: &[Arc<Frame>], how: &Looking) -> Vec<Bare> {
             let size = (f.width as usize, f.height as usize);
             let gray = Gray::of(&ImageView::new(size.0, size.1, 3, &f.data).expect("a frame")).expect("grey");
             let limits = thresholds(&gray, Thresholds::Automatic).expect("thresholds");
+            let derivatives = derivatives(&gray, 0.0, &how.contours).expect("derivatives");
             let [fx, fy] = f.optics.focal;
             let lens =
                 Lens { fx, fy, cx: f.optics.centre[0] - 0.5, cy: f.optics.centre[1] - 0.5, distortion: None };
@@ -79,7 +81,7 @@ fn bare_calls(frames: &[Arc<Frame>], how: &Looking) -> Vec<Bare> {
                 memory = next;
             }
             let point = |p: [f64; 2]| Point2f::new(p[0] as f32, p[1] as f32);
-            Bare { limits, points: memory.points.iter().map(|p| point(p.pixel)).collect() }
+            Bare { limits, derivatives, points: memory.points.iter().map(|p| point(p.pixel)).collect() }
         })
         .collect()
 }
@@ -116,7 +118,7 @@ fn main() {
                 let frame = take(n);
                 let size = (frame.width as usize, frame.height as usize);
                 let grey = bare::grey(&frame.data, size);
-                std::hint::black_box(bare::detect(&grey, size, call.limits, &how.contours));
+                std::hint::black_box(bare::detect(&grey, &call.derivatives, call.limits, &how.contours));
                 if let Some(before) = before.as_ref().filter(|_| !call.points.is_empty()) {
                     std::hint::black_box(bare::flow(before, &grey, &call.points, &how.points));
                 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use criterion::Criterion;
 use opencv::core::{Mat, Point2f, Vector};
-use soifra_vision::contours::{Thresholds, thresholds, verticals};
+use soifra_vision::contours::{Thresholds, derivatives, thresholds, verticals};
 use soifra_vision::follow::Moment;
 use soifra_vision::look::{Looking, Memory, look, look_at, nearest};
 use soifra_vision::points;
@@ -86,6 +86,8 @@ fn main() {
     let how = Looking::default();
     let limits: Vec<(f64, f64)> =
         grays.iter().map(|g| thresholds(g, Thresholds::Automatic).expect("thresholds")).collect();
+    let left: Vec<(Mat, Mat)> =
+        grays.iter().map(|g| derivatives(g, 0.0, &how.contours).expect("derivatives")).collect();
     let moment = |k: usize| Moment::straight(k as f64 * 0.05);
 
     // What is remembered before each frame, and the points that the flow is asked for.
@@ -109,7 +111,7 @@ fn main() {
             let _ = black_box(verticals(&grays[k], 0.0, &how.contours));
         },
         |k| {
-            black_box(detect(&mats[k], (WIDTH, HEIGHT), limits[k], &how.contours));
+            black_box(detect(&mats[k], &left[k], limits[k], &how.contours));
         },
     ));
     tell(ratio(
@@ -119,7 +121,7 @@ fn main() {
         },
         |k| {
             let gray = grey(k);
-            black_box(detect(&gray, (WIDTH, HEIGHT), limits[k], &how.contours));
+            black_box(detect(&gray, &left[k], limits[k], &how.contours));
             if !starts[k].is_empty() {
                 black_box(flow(&mats[k - 1], &gray, &starts[k], &how.points));
             }
@@ -140,7 +142,7 @@ fn main() {
             let _ = black_box(nearest(&grays[k - 1], &grays[k], 0.0, &lens, &how.contours, &how.points));
         },
         |k| {
-            black_box(detect(&mats[k], (WIDTH, HEIGHT), limits[k], &how.contours));
+            black_box(detect(&mats[k], &left[k], limits[k], &how.contours));
             if !published[k].is_empty() {
                 black_box(flow(&mats[k], &mats[k - 1], &published[k], &how.points));
             }

@@ -1,8 +1,8 @@
 //! Contours and segments: Canny and the probabilistic Hough transform, with thresholds given or found from the
 //! image itself.
 
-use opencv::core::{self, Mat, Scalar, Vec4i, Vector};
-use opencv::imgproc;
+use opencv::core::{self, Mat, Vec4i, Vector};
+use opencv::{imgproc, prelude::*};
 
 use crate::image::Gray;
 use crate::segment::{Merging, Segment, merge};
@@ -62,7 +62,7 @@ pub fn verticals(image: &Gray, roll: f64, how: &Contours) -> Result<Vec<Segment>
         return Err(Why::BadNumber);
     }
     let (low, high) = thresholds(image, how.thresholds)?;
-    let lines = segments(image, low, high, how)?;
+    let lines = segments(image, (low, high), roll, how)?;
     let upright: Vec<Segment> = lines
         .iter()
         .map(|l| Segment::new([f64::from(l[0]), f64::from(l[1])], [f64::from(l[2]), f64::from(l[3])]))
@@ -74,16 +74,16 @@ pub fn verticals(image: &Gray, roll: f64, how: &Contours) -> Result<Vec<Segment>
     Ok(merge(&upright, &how.merging))
 }
 
-/// The bare calls: Canny, then Hough. Canny sees the derivative across the image only: contours that lie flat never
-/// arise, nor their votes, which in a room of bricks and tiles are most of them. An edge that leans by θ shows
-/// cos θ of its gradient.
-fn segments(image: &Gray, low: f64, high: f64, how: &Contours) -> Result<Vector<Vec4i>, Why> {
+/// How far the direction of a gradient may be off that of an upright edge, beyond the tolerance, radians: at the lower
+/// threshold, three standard deviations of the noise, the direction of a gradient scatters by a third.
+const SCATTER: f64 = 0.35;
+
+/// The bare calls: Canny, then Hough. Canny sees the derivative across the image only, and that only where it points
+/// across an edge that may be upright: what lies flat or leans never becomes a contour, nor a vote, which in a room of
+/// bricks, tiles and speckle are most of them.
+fn segments(image: &Gray, (low, high): (f64, f64), roll: f64, how: &Contours) -> Result<Vector<Vec4i>, Why> {
     let mut contours = Mat::default();
-    let mut across = Mat::default();
-    let border = core::BORDER_REPLICATE;
-    imgproc::sobel(&image.mat()?, &mut across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border)?;
-    let (rows, columns) = (image.height() as i32, image.width() as i32);
-    let along = Mat::new_rows_cols_with_default(rows, columns, core::CV_16S, Scalar::all(0.0))?;
+    let (across, along) = derivatives(image, roll, how)?;
     imgproc::canny_derivative(&across, &along, &mut contours, low, high, false)?;
     let mut lines = Vector::<Vec4i>::new();
     imgproc::hough_lines_p(
@@ -96,6 +96,33 @@ fn segments(image: &Gray, low: f64, high: f64, how: &Contours) -> Result<Vector<
         how.gap.max(0.0),
     )?;
     Ok(lines)
+}
+
+/// The derivatives across and along the image (3 x 3 Sobel, 16 bits) that Canny is given: those across where an edge may
+/// be upright, none along.
+///
+/// # Errors
+/// Those of OpenCV.
+pub fn derivatives(image: &Gray, roll: f64, how: &Contours) -> Result<(Mat, Mat), Why> {
+    let (mut across, mut along) = (Mat::default(), Mat::default());
+    let border = core::BORDER_REPLICATE;
+    let grey = image.mat()?;
+    imgproc::sobel(&grey, &mut across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border)?;
+    imgproc::sobel(&grey, &mut along, core::CV_16S, 0, 1, 3, 1.0, 0.0, border)?;
+    upright(across.data_typed_mut()?, along.data_typed_mut()?, how.tolerance + roll.abs() + SCATTER);
+    Ok((across, along))
+}
+
+/// Leaves of the derivatives across the image those whose gradient is at most `lean` radians off level; those along the
+/// image are cleared.
+fn upright(across: &mut [i16], along: &mut [i16], lean: f64) {
+    // In units of 1/256, so that whole numbers do; steeper than that everything is left.
+    let slope = if (0.0..1.5).contains(&lean) { (256.0 * libm::tan(lean)) as i32 } else { 4096 };
+    for (x, y) in across.iter_mut().zip(along) {
+        let flat = 256 * i32::from(*y).abs() > slope * i32::from(*x).abs();
+        *x = if flat { 0 } else { *x };
+        *y = 0;
+    }
 }
 
 /// Canny's thresholds (low, high) for this image.

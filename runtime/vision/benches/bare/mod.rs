@@ -1,6 +1,6 @@
 //! The bare OpenCV calls that the services make.
 
-use opencv::core::{self, Mat, Point2f, Scalar, Size, TermCriteria, ToInputArray, Vec3b, Vec4i, Vector};
+use opencv::core::{self, Mat, Point2f, Size, TermCriteria, ToInputArray, Vec3b, Vec4i, Vector};
 use opencv::{imgproc, video};
 use soifra_vision::contours::Contours;
 use soifra_vision::points;
@@ -13,20 +13,20 @@ pub fn grey(rgb: &[u8], (width, height): (usize, usize)) -> Mat {
     target
 }
 
-/// The bare calls of the detection: Canny with the thresholds that the service uses, Hough.
+/// The bare calls of the detection: derivatives, Canny with the thresholds that the service uses on what it leaves of
+/// them, Hough.
 pub fn detect(
     gray: &impl ToInputArray,
-    (width, height): (usize, usize),
+    (across, along): &(Mat, Mat),
     (low, high): (f64, f64),
     how: &Contours,
 ) -> Vector<Vec4i> {
-    let (mut across, mut contours) = (Mat::default(), Mat::default());
+    let (mut derivative, mut contours) = (Mat::default(), Mat::default());
     let border = core::BORDER_REPLICATE;
-    imgproc::sobel(gray, &mut across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border).expect("sobel");
-    let (rows, columns) = (height as i32, width as i32);
-    let along =
-        Mat::new_rows_cols_with_default(rows, columns, core::CV_16S, Scalar::all(0.0)).expect("zeros");
-    imgproc::canny_derivative(&across, &along, &mut contours, low, high, false).expect("canny");
+    for (x, y) in [(1, 0), (0, 1)] {
+        imgproc::sobel(gray, &mut derivative, core::CV_16S, x, y, 3, 1.0, 0.0, border).expect("sobel");
+    }
+    imgproc::canny_derivative(across, along, &mut contours, low, high, false).expect("canny");
     let mut lines = Vector::new();
     let step = std::f64::consts::PI / 180.0;
     imgproc::hough_lines_p(&contours, &mut lines, 1.0, step, how.votes, how.shortest, how.gap)
