@@ -41,7 +41,8 @@ impl Default for Matching {
     }
 }
 
-/// The pose near a guess at which a scan fits best; `field` is that of what has been seen so far.
+/// The pose near a guess at which a scan fits best; `field` is that of the faces of what has been seen so far
+/// ([`Field::of_faces`]).
 ///
 /// # Errors
 /// [`Why::BadNumber`], [`Why::NothingInRange`], [`Why::NoMatch`].
