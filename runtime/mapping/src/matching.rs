@@ -34,7 +34,7 @@ impl Default for Matching {
             step: [0.01, 0.0022],
             beams: 150,
             reach: 20.0,
-            blur: 0.03,
+            blur: 0.06,
             doubt: 0.02,
             least: 0.3,
         }
