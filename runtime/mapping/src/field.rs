@@ -18,19 +18,11 @@ const FAR: f64 = 1e12;
 impl Field {
     /// The field of a grid's occupied cells.
     pub fn of(grid: &Grid) -> Field {
-        Field::to(grid.layout, |cell| grid.is_occupied(cell))
-    }
-
-    /// The field of the occupied cells that have a free one beside them: the faces of things. What beams end in behind a face,
-    /// by their noise, is filled and nothing goes through it: the middle of what is filled lies behind what was met.
-    pub fn of_faces(grid: &Grid) -> Field {
-        Field::to(grid.layout, |cell| grid.is_occupied(cell) && grid.is_beside_free(cell))
-    }
-
-    fn to(layout: Layout, counts: impl Fn([usize; 2]) -> bool) -> Field {
+        let layout = grid.layout;
         let [nx, ny] = layout.size;
+        let occupied = |i: usize| grid.is_occupied(layout.cell_at(i));
         let mut squares: Vec<f64> =
-            (0..layout.cells()).map(|i| if counts(layout.cell_at(i)) { 0.0 } else { FAR }).collect();
+            (0..layout.cells()).map(|i| if occupied(i) { 0.0 } else { FAR }).collect();
         let mut room = Room::new(nx.max(ny));
         let mut line = vec![0.0; nx.max(ny)];
         for row in squares.chunks_mut(nx) {

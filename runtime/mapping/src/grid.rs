@@ -122,20 +122,6 @@ impl Grid {
     pub fn is_occupied(&self, cell: [usize; 2]) -> bool {
         self.at(cell) >= SURE
     }
-
-    /// Whether nothing stands in a cell.
-    pub fn is_free(&self, cell: [usize; 2]) -> bool {
-        self.at(cell) <= -SURE
-    }
-
-    /// Whether one of the four cells that share a side with a cell is free.
-    pub fn is_beside_free(&self, [x, y]: [usize; 2]) -> bool {
-        let [nx, ny] = self.layout.size;
-        (x > 0 && self.is_free([x - 1, y]))
-            || (x + 1 < nx && self.is_free([x + 1, y]))
-            || (y > 0 && self.is_free([x, y - 1]))
-            || (y + 1 < ny && self.is_free([x, y + 1]))
-    }
 }
 
 #[cfg(test)]

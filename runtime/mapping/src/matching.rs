@@ -41,8 +41,7 @@ impl Default for Matching {
     }
 }
 
-/// The pose near a guess at which a scan fits best; `field` is that of the faces of what has been seen so far
-/// ([`Field::of_faces`]).
+/// The pose near a guess at which a scan fits best; `field` is that of what has been seen so far.
 ///
 /// # Errors
 /// [`Why::BadNumber`], [`Why::NothingInRange`], [`Why::NoMatch`].

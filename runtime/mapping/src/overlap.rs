@@ -1,6 +1,6 @@
 //! How much two maps have in common.
 
-use crate::grid::Grid;
+use crate::grid::{Grid, SURE};
 
 /// Intersection over union of what is not free in two grids, 0 to 1: cells that are free in neither, of those that are not
 /// free in both. Cells are those of the first grid. What is occupied is not free, nor is that of which nothing is known: the
@@ -11,11 +11,15 @@ pub fn overlap(a: &Grid, b: &Grid) -> f64 {
     for i in 0..a.layout.cells() {
         let cell = a.layout.cell_at(i);
         let (p, q) =
-            (!a.is_free(cell), b.layout.cell_of(a.layout.centre(cell)).is_none_or(|c| !b.is_free(c)));
+            (!is_free(a, cell), b.layout.cell_of(a.layout.centre(cell)).is_none_or(|c| !is_free(b, c)));
         both += u32::from(p && q);
         either += u32::from(p || q);
     }
     if either == 0 { 1.0 } else { f64::from(both) / f64::from(either) }
+}
+
+fn is_free(grid: &Grid, cell: [usize; 2]) -> bool {
+    grid.at(cell) <= -SURE
 }
 
 #[cfg(test)]

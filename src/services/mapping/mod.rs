@@ -103,7 +103,7 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
             let guess = args.place()?;
             let [window, turn] = args.take_last()?;
             let how = Matching { window: [window, turn], ..Matching::default() };
-            let found = matching::match_scan(of::<Map>(&grid)?.faces(), &args.scan()?, guess, &how);
+            let found = matching::match_scan(of::<Map>(&grid)?.field(), &args.scan()?, guess, &how);
             out.optional(found.map(pose))
         }
         Function::PlanPath => {
