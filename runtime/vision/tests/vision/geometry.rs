@@ -4,12 +4,11 @@ use proptest::prelude::*;
 use soifra_vision::attitude::{Attitude, Rates};
 use soifra_vision::course::{Bearing, Body, Freer, Reach, course, diverging};
 use soifra_vision::edge::{Edge, Side, Upright, nearest_pair, seen, side, upright};
-use soifra_vision::expansion::{Width, Window, window};
 use soifra_vision::flow::Track;
 use soifra_vision::segment::{Merging, Segment, merge};
-use soifra_vision::sweep::Tangent;
 use soifra_vision::{Lens, Why};
 
+use crate::gaps::watched;
 use crate::scene::Gauss;
 
 fn lens() -> Lens {
@@ -54,59 +53,6 @@ fn the_published_test_of_the_flow() {
     assert_eq!(diverging(&[t(300.0, 1.0, 0.0)], &[t(340.0, -1.0, 0.0)]), Ok(false));
     assert_eq!(diverging(&[], &[t(340.0, 1.0, 0.0)]), Err(Why::NoFeatures));
     assert_eq!(diverging(&[t(300.0, 0.0, 0.0)], &[t(340.0, 1.0, 0.0)]), Err(Why::NoMotion));
-}
-
-/// What the services would know of a thing between two lateral offsets, from noisy bearings of an approach.
-fn watched(left: f64, right: f64, z: f64, speed: f64, draws: &mut Gauss) -> Result<Reach, Why> {
-    let noise = 0.1 / 554.0;
-    let mut history = [Vec::new(), Vec::new()];
-    let drift = 0.001 * draws.next();
-    for k in -30..=0 {
-        let t = f64::from(k) * 0.05;
-        for (h, y) in history.iter_mut().zip([left, right]) {
-            let tangent = y / (z - speed * t) + drift * t + noise * draws.next();
-            h.push(Tangent { time: t, aside: 0.0, tangent });
-        }
-    }
-    let widths: Vec<Width> = history[0]
-        .iter()
-        .zip(&history[1])
-        .map(|(a, b)| Width { time: a.time, width: a.tangent - b.tangent })
-        .collect();
-    let ttc = window(&widths, &Window::default())?.ttc;
-    Reach::predict(&Bearing::fit(&history[0], 1.0 / ttc)?, &Bearing::fit(&history[1], 1.0 / ttc)?, ttc, speed)
-}
-
-/// Gaps of 0.5 to 4 body widths between two obstacles, lateral offsets of 0 to 2 half-widths: right in at least
-/// 95 % of each class. "Right" leaves out gaps that fit within two centimetres.
-#[test]
-fn gaps_and_offsets() {
-    let body = Body { half_width: 0.25, margin: 0.05 };
-    let mut draws = Gauss::new(11);
-    for gap in [0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0] {
-        for offset in [0.0, 0.5, 1.0, 1.5, 2.0] {
-            let (mut right, mut asked) = (0, 0);
-            for trial in 0..40 {
-                let centre = offset * body.half_width * if trial % 2 == 0 { 1.0 } else { -1.0 };
-                let half = gap * body.half_width;
-                let (inner_left, inner_right) = (centre + half, centre - half);
-                let room = inner_left.min(-inner_right) - body.half_width - body.margin;
-                if room.abs() < 0.02 {
-                    continue;
-                }
-                asked += 1;
-                let z = 2.5 + draws.uniform();
-                let speed = 0.3 + 0.5 * draws.uniform();
-                let seen: Vec<Reach> = [(inner_left + 1.0, inner_left), (inner_right, inner_right - 1.0)]
-                    .iter()
-                    .filter_map(|(l, r)| watched(*l, *r, z, speed, &mut draws).ok())
-                    .collect();
-                let found = course(&seen, &body);
-                right += usize::from(found.is_ok_and(|c| c.collision == (room < 0.0)));
-            }
-            assert!(100 * right >= 95 * asked, "gap {gap} offset {offset}: {right} of {asked}");
-        }
-    }
 }
 
 /// A single obstacle, both edges on one side included; the freer side is the one with the shorter way round.

@@ -4,6 +4,7 @@
 
 mod approach;
 mod contact;
+mod gaps;
 mod geometry;
 mod places;
 mod robustness;
