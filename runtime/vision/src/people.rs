@@ -75,8 +75,10 @@ const DOUBTS: u32 = 30;
 const WINDOW: [f64; 2] = [3.0, 1.5];
 /// Metres a second: one walks above, and stands below.
 const WALKING: [f64; 2] = [0.15, 0.08];
-/// How sure the range is by the bearing, for walking.
-const DEPTH: f64 = 0.5;
+/// How much a way along the sight counts for walking, beside one across: at most, and times the range in metres.
+const DEPTH: [f64; 2] = [0.5, 2.0];
+/// Images until somebody new is where they seem to be.
+const SETTLING: usize = 5;
 /// The nearer foot is that much nearer than the middle, metres.
 const FOOT: f64 = 0.12;
 
@@ -202,6 +204,7 @@ impl Track {
         self.place = at.out(place);
         self.seen = at.time;
         self.way.clear();
+        self.walks = false;
         if let Some(now) = Clothes::of(image, &at.ground, place) {
             self.clothes.adapt(&now, 0.3);
         }
@@ -223,6 +226,13 @@ impl Track {
         let range = libm::hypot(predicted[0], predicted[1]).max(0.1);
         let sight = at.out([predicted[0] / range, predicted[1] / range]);
         let sight = [sight[0] - at.place[0], sight[1] - at.place[1]];
+        if self.way.len() <= SETTLING && !self.walks {
+            self.velocity = [0.0; 2];
+            self.place = [0, 1].map(|k| 0.5 * (self.place[k] + measured[k]));
+            self.seen = at.time;
+            self.way.push((at.time, measured));
+            return;
+        }
         let off = [measured[0] - px, measured[1] - py];
         let along = off[0] * sight[0] + off[1] * sight[1];
         let across = [off[0] - along * sight[0], off[1] - along * sight[1]];
@@ -261,7 +271,8 @@ impl Track {
         let (x, y) = (c * x + s * y, c * y - s * x);
         let along = (x * ahead + y * left) / range;
         let across = (y * ahead - x * left) / range;
-        let speed = libm::hypot(across, DEPTH * along) / (b[0] - a[0]).max(0.1);
+        let depth = DEPTH[0].min(DEPTH[1] / range);
+        let speed = libm::hypot(across, depth * along) / (b[0] - a[0]).max(0.1);
         let [walks, stands] = WALKING;
         self.walks = if self.walks { speed > stands } else { speed > walks };
     }
@@ -276,6 +287,10 @@ fn find(image: &ImageView<'_>, ground: &Ground, place: [f64; 2], clothes: &Cloth
     }
     let pixels = ground.lens.fx / place[0];
     let [x, _] = ground.pixel([place[0], place[1], 0.5])?;
+    // At the border of the image only a part would be found.
+    if x - 0.35 * pixels < 0.0 || x + 0.35 * pixels > size.0 as f64 {
+        return None;
+    }
     // How likely each column shows somebody: the mean over its rows.
     let columns = |part, up| -> Option<(usize, Vec<f64>)> {
         let [left, right, top, bottom] = ground.upright(size, place, [-0.8, 0.8], up)?;
