@@ -114,7 +114,9 @@ impl Function {
     /// judge of a run answers.
     pub fn is_service(self) -> bool {
         let s = self.signature();
-        self == Function::TruePlace || s.result.is_opaque() || s.parameters.iter().any(|p| p.pattern.is_opaque())
+        self == Function::TruePlace
+            || s.result.is_opaque()
+            || s.parameters.iter().any(|p| p.pattern.is_opaque())
     }
 
     /// Whether it tells the truth about the world, which no behaviour can know.

@@ -79,6 +79,8 @@ const WALKING: [f64; 2] = [0.15, 0.08];
 const DEPTH: [f64; 2] = [0.5, 2.0];
 /// Images until somebody new is where they seem to be.
 const SETTLING: usize = 5;
+/// Metres to either side in which clothes pull towards their middle; wider, and what stands beside would pull too.
+const SHIFT: f64 = 0.2;
 /// The nearer foot is that much nearer than the middle, metres.
 const FOOT: f64 = 0.12;
 
@@ -183,7 +185,8 @@ fn associate(image: &ImageView<'_>, at: &Standpoint, shape: &Shape, all: &mut Pe
         return;
     }
     let Some(clothes) = Clothes::of(image, &at.ground, shape.place) else { return };
-    let lost = |t: &&mut Track| t.shapes >= SURE && at.time - t.seen > COASTING && t.clothes.alike(&clothes) > SAME;
+    let lost =
+        |t: &&mut Track| t.shapes >= SURE && at.time - t.seen > COASTING && t.clothes.alike(&clothes) > SAME;
     let place = at.out(shape.place);
     if let Some(track) = all.tracks.iter_mut().find(lost) {
         track.take(image, at, shape.place);
@@ -194,7 +197,17 @@ fn associate(image: &ImageView<'_>, at: &Standpoint, shape: &Shape, all: &mut Pe
     let number = all.next;
     all.next = all.next.wrapping_add(1);
     let velocity = [0.0; 2];
-    all.tracks.push(Track { number, place, velocity, seen, shapes: 1, walks: false, doubts: 0, clothes, way });
+    all.tracks.push(Track {
+        number,
+        place,
+        velocity,
+        seen,
+        shapes: 1,
+        walks: false,
+        doubts: 0,
+        clothes,
+        way,
+    });
     taken.push(true);
 }
 
@@ -315,12 +328,12 @@ fn find(image: &ImageView<'_>, ground: &Ground, place: [f64; 2], clothes: &Cloth
         low..=high
     };
     let mut middle = x - left as f64;
-    for _ in 0..8 {
-        let all: f64 = around(middle, 0.28 * pixels).map(weight).sum();
+    for _ in 0..4 {
+        let all: f64 = around(middle, SHIFT * pixels).map(weight).sum();
         if !(all > 1e-6) {
             return None;
         }
-        middle = around(middle, 0.28 * pixels).map(|i| weight(i) * i as f64).sum::<f64>() / all;
+        middle = around(middle, SHIFT * pixels).map(|i| weight(i) * i as f64).sum::<f64>() / all;
     }
     let trunk = around(middle, 0.14 * pixels);
     let n = trunk.clone().count().max(1) as f64;
@@ -333,8 +346,8 @@ fn find(image: &ImageView<'_>, ground: &Ground, place: [f64; 2], clothes: &Cloth
     let foot = foot(image, ground, here, clothes, pixels)?;
     let by_foot = ground.place(x, foot)?;
     let measured = libm::hypot(by_foot[0], by_foot[1]) + FOOT;
-    // Where the end of the clothes cannot be that of the feet, the bearing counts alone.
-    let measured = if (measured - range).abs() < 0.35 * range { measured } else { range };
+    // Where the end of the clothes cannot be that of the feet, the bearing counts alone. Too near is believed.
+    let measured = if measured < 1.35 * range { measured.max(0.3 * range) } else { range };
     let by = measured / libm::hypot(here[0], here[1]).max(0.1);
     Some([here[0] * by, here[1] * by])
 }

@@ -2,7 +2,8 @@
 
 use crate::sim::{args::Args, body::Body, scene};
 use soifra_camera::{
-    Clothes, Figure, Lens, Light, Mesh, PartIndex, PartPose, Point, Pose, Rotation, Scene as Pictured, Surface, Texture,
+    Clothes, Figure, Lens, Light, Mesh, PartIndex, PartPose, Point, Pose, Rotation, Scene as Pictured,
+    Surface, Texture,
 };
 use soifra_runtime::{
     Scene, Time,

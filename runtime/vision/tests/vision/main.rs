@@ -5,6 +5,7 @@
 mod approach;
 mod contact;
 mod geometry;
+mod people;
 mod places;
 mod robustness;
 mod scene;
