@@ -12,7 +12,7 @@ const TRUNK: f64 = 0.13;
 const BESIDE: [f64; 2] = [0.5, 0.9];
 /// Metres over the ground.
 const UPPER: [f64; 2] = [1.0, 1.38];
-const LOWER: [f64; 2] = [0.0, 0.8];
+const LOWER: [f64; 2] = [0.1, 0.8];
 
 /// Histograms of what somebody wears above and below the hip, and of what is around; each sums to 1.
 #[derive(Clone, Debug, PartialEq)]

@@ -79,8 +79,10 @@ const WALKING: [f64; 2] = [0.15, 0.08];
 const DEPTH: [f64; 2] = [0.5, 2.0];
 /// Images until somebody new is where they seem to be.
 const SETTLING: usize = 5;
+/// Metres over the ground at which what is worn below the hip ends above the shoes.
+const HEM: f64 = 0.06;
 /// Metres to either side in which clothes pull towards their middle; wider, and what stands beside would pull too.
-const SHIFT: f64 = 0.2;
+const SHIFT: f64 = 0.25;
 /// The nearer foot is that much nearer than the middle, metres.
 const FOOT: f64 = 0.12;
 
@@ -328,7 +330,7 @@ fn find(image: &ImageView<'_>, ground: &Ground, place: [f64; 2], clothes: &Cloth
         low..=high
     };
     let mut middle = x - left as f64;
-    for _ in 0..4 {
+    for _ in 0..8 {
         let all: f64 = around(middle, SHIFT * pixels).map(weight).sum();
         if !(all > 1e-6) {
             return None;
@@ -344,10 +346,10 @@ fn find(image: &ImageView<'_>, ground: &Ground, place: [f64; 2], clothes: &Cloth
     let aside = place[0] * ((x - ground.lens.cx) / ground.lens.fx);
     let here = [place[0], -aside];
     let foot = foot(image, ground, here, clothes, pixels)?;
-    let by_foot = ground.place(x, foot)?;
+    let by_foot = Ground { height: ground.height - HEM, ..*ground }.place(x, foot)?;
     let measured = libm::hypot(by_foot[0], by_foot[1]) + FOOT;
-    // Where the end of the clothes cannot be that of the feet, the bearing counts alone. Too near is believed.
-    let measured = if measured < 1.35 * range { measured.max(0.3 * range) } else { range };
+    // Where the end of the clothes cannot be that of the feet, the bearing counts alone.
+    let measured = if (0.5 * range..1.35 * range).contains(&measured) { measured } else { range };
     let by = measured / libm::hypot(here[0], here[1]).max(0.1);
     Some([here[0] * by, here[1] * by])
 }
