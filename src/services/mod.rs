@@ -45,7 +45,7 @@ pub fn missing(graph: &Graph) -> Vec<Diagnostic> {
     let mut look = |e: &Expr| {
         if let Op::Builtin(f) = e.op
             && f.is_service()
-            && f != Function::Brightness
+            && !matches!(f, Function::Brightness | Function::TruePlace)
             && !mapping::computes(f)
         {
             let name = &f.signature().name;

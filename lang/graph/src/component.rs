@@ -205,6 +205,11 @@ const TABLE: &[(&str, &str, &str)] = &[
     ),
     (
         "mover",
+        "walker(path: List<Point<map>, N>, speed: Velocity, phase: Number = 0, radius: Length = 30 cm, height: Length = 1.75 m, skin: Text = \"#cd9b7d\", hair: Text = \"#3c2a1e\", shirt: Text = \"#b22c28\", trousers: Text = \"#2c3862\", shoes: Text = \"#24201e\")",
+        "A person who walks along a path and from its end to its beginning, round and round; phase is where in that round it starts, 0 .. 1; at speed 0 it stands there, facing on. It is as wide as a cylinder of that radius; cameras see a figure whose arms and legs swing with the way it has gone, in clothes of these colours, as #rrggbb",
+    ),
+    (
+        "mover",
         "wanderer(radius: Length, height: Length = 50 cm, at: Point<map>, heading: Heading<map>, speed: Velocity, turn_period: Duration, keep_out: Length? = none, material: Text = \"plaster\")",
         "A cylinder that walks straight, draws a new heading at every turn period, and is reflected by the bounds; given `keep_out`, its rim begins and stays that far from every robot's start and target",
     ),

@@ -81,8 +81,11 @@ functions! {
     Diverging "diverging(sight: Sight) -> Bool?" "Whether the flows of the first obstacle's sides do not meet (the published test of a collision course)";
     CourseAhead "course_ahead(sight: Sight, radius: Length = 0, least: Angle = 0) -> CourseAhead?" "What going straight on leads to, for the body and margin that `look` was told, and how far to turn, on a curve of that radius and by that much at least, for a free way";
     NearestPairAhead "nearest_pair_ahead(sight: Sight) -> CourseAhead?" "The same by the published detection (SOIFRA, Algorithm 1): the nearest upright edge on each side of the optical centre, a collision when their flows between two images do not meet, the distance by the focus of expansion of that flow (Eq. 4), and more room on the side where the pair is not. Of clearance and turns it says nothing: they are 0";
+    WatchPeople "watch_people(image: Image, before: People?, odometry: Odometry, imu: Imu? = none) -> People?" "Who is seen in an image: people are found by their shape (histograms of oriented gradients, Dalal and Triggs 2005), where they are whole in the image, and followed since `before` by the colours of their clothes. They stand on level ground, and so does the robot; without `imu` the camera is level";
+    PeopleSeen "people_seen(people: People) -> List<SeenPerson, 8>" "Those who are seen, or were a moment ago, in the order of their numbers";
     KnownMap "known_map(resolution: Length = 5 cm) -> OccupancyGrid?" "The walls and obstacles of the world that are on the map, over its bounds, as a grid with cells of that side; none without bounds";
     TrueMap "true_map(resolution: Length = 5 cm) -> OccupancyGrid?" "The same of all walls and obstacles that there are: truth, for `done`, `expect` and `metric` only";
+    TruePlace "true_place(mover: Int) -> Point<map>?" "Where a mover of the world is, counted from 0 in the order in which they are declared: truth, for `done`, `expect` and `metric` only; none when there are not as many";
     EmptyMap "empty_map(low: Point<map>, high: Point<map>, resolution: Length = 5 cm) -> OccupancyGrid?" "A grid over a rectangle of which nothing is known";
     Observe "observe(grid: OccupancyGrid, at: Pose<map>, scan: List<Beam, N>, reach: Length = 30 m) -> OccupancyGrid" "The grid after a scan from that pose: what beams went through is more likely free, what they ended in more likely occupied (Probabilistic Robotics, Table 9.1)";
     Localise "localise(before: Particles?, start: Pose<map>, odometry: Pose<odom>, scan: List<Beam, N>, grid: OccupancyGrid, random: Number, count: Int = 400, spread: Length = 20 cm, turn_spread: Angle = 5 deg) -> Particles?" "Where the robot may be on a map: particles that are moved by odometry and weighed by a scan (Monte Carlo localisation, Probabilistic Robotics, Table 8.2); at first `count` of them, spread about `start`. `random` is a number drawn anew for each call";
@@ -107,15 +110,18 @@ impl Function {
     }
 
     /// Whether it is computed by a service of the runtime's surroundings, such as a library for images, and not by
-    /// the machine itself: whatever takes or gives an opaque value, since only services look into one.
+    /// the machine itself: whatever takes or gives an opaque value, since only services look into one, and what the
+    /// judge of a run answers.
     pub fn is_service(self) -> bool {
         let s = self.signature();
-        s.result.is_opaque() || s.parameters.iter().any(|p| p.pattern.is_opaque())
+        self == Function::TruePlace
+            || s.result.is_opaque()
+            || s.parameters.iter().any(|p| p.pattern.is_opaque())
     }
 
     /// Whether it tells the truth about the world, which no behaviour can know.
     pub fn is_truth(self) -> bool {
-        self == Function::TrueMap
+        matches!(self, Function::TrueMap | Function::TruePlace)
     }
 
     /// Whether two calls with the same arguments may give different values.

@@ -151,7 +151,7 @@ impl TryFrom<String> for Type {
 }
 
 /// Types whose values are passed around and never looked into: only services can.
-pub const OPAQUE: [&str; 5] = ["Image", "Sight", "OccupancyGrid", "Particles", "Path"];
+pub const OPAQUE: [&str; 6] = ["Image", "Sight", "People", "OccupancyGrid", "Particles", "Path"];
 
 /// A record: named fields in order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

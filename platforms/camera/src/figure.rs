@@ -114,8 +114,11 @@ impl Figure {
     /// Adds the figure to a frame: the point on the ground that it stands on (x, y, z), its heading in radians from
     /// east to the left, and how far it is in its stride: 0 and 1 with its legs together, the left one going forward.
     pub fn place(&self, ground: [f64; 3], heading: f64, phase: f64, parts: &mut Vec<PartPose>) {
-        let body = Pose::upright(ground, heading);
         let swing = if phase.is_finite() { libm::sin(core::f64::consts::TAU * phase) } else { 0.0 };
+        // With its legs apart it is lower: its feet stay on the ground.
+        let lower = LEG * (1.0 - libm::cos(STRIDE * swing)) * self.height / BUILT;
+        let [x, y, z] = ground;
+        let body = Pose::upright([x, y, z - lower], heading);
         parts.push(PartPose { part: self.trunk, pose: body });
         for limb in &self.limbs {
             let [left, up] = limb.joint;

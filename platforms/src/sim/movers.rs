@@ -17,8 +17,8 @@ const SHORTEST: i64 = 100_000;
 /// What makes a mover walk.
 #[derive(Debug)]
 pub enum Mover {
-    /// To and fro along a path.
-    Path(ToAndFro),
+    /// Along a path, for ever.
+    Path(Along),
     /// Straight on, with a new heading now and then.
     Wanderer(Box<Wanderer>),
 }
@@ -36,23 +36,37 @@ impl Mover {
     }
 }
 
-/// Walks along a path and back, for ever.
+/// How a path goes on where it ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Back the way it came.
+    Back,
+    /// Straight to its beginning.
+    Round,
+}
+
+/// Walks along a path, for ever.
 #[derive(Debug)]
-pub struct ToAndFro {
+pub struct Along {
     points: Vec<Vec2>,
     /// Length of the path up to each point.
     upto: Vec<f64>,
     speed: f64,
     /// Where in the round trip it started, metres.
     offset: f64,
-    /// The next point in the round trip 0, 1, … n-1, n-2, … 1, 0, 1, …, counted on without end.
+    /// The next point in the round trip 0, 1, … n-1, n-2, … 1, 0, 1, …, or 0, 1, … n-1, 1, …, where the last is the first
+    /// again, counted on without end.
     next: u64,
+    end: End,
 }
 
-impl ToAndFro {
-    /// From `disc(…)`: the mover and where it starts.
-    pub fn new(args: Args<'_>) -> Result<(ToAndFro, Place), String> {
+impl Along {
+    /// From `disc(…)` or `walker(…)`: the mover and where it starts.
+    pub fn new(args: Args<'_>, end: End) -> Result<(Along, Place), String> {
         let mut points = args.points("path")?;
+        if end == End::Round {
+            points.extend(points.first().copied());
+        }
         points.dedup();
         let speed = args.at_least_zero("speed")?;
         let phase = args.number("phase")?;
@@ -67,13 +81,13 @@ impl ToAndFro {
         if points.len() < 2 || length < 1e-9 {
             points.truncate(1);
             let place = Place { at: points[0], heading: 0.0, path: 0.0 };
-            return Ok((ToAndFro { points, upto, speed: 0.0, offset: 0.0, next: 1 }, place));
+            return Ok((Along { points, upto, speed: 0.0, offset: 0.0, next: 1, end }, place));
         }
         if speed > 0.0 && length / speed < SHORTEST as f64 * 1e-9 {
             return Err(args.wrong("the whole path takes less than 0.1 ms"));
         }
-        let mut mover =
-            ToAndFro { points, upto, speed, offset: (phase - phase.floor()) * 2.0 * length, next: 1 };
+        let round = if end == End::Back { 2.0 * length } else { length };
+        let mut mover = Along { points, upto, speed, offset: (phase - phase.floor()) * round, next: 1, end };
         while mover.distance(mover.next) <= mover.offset {
             mover.next += 1;
         }
@@ -85,17 +99,25 @@ impl ToAndFro {
         self.points.len() as u64 - 1
     }
 
+    /// Legs of a round trip.
+    fn round(&self) -> u64 {
+        if self.end == End::Back { 2 * self.legs() } else { self.legs() }
+    }
+
     /// The point at a place in the round trip.
     fn point(&self, n: u64) -> usize {
-        let k = n % (2 * self.legs());
-        k.min(2 * self.legs() - k) as usize
+        let k = n % self.round();
+        if self.end == End::Back { k.min(self.round() - k) as usize } else { k as usize }
     }
 
     /// Distance walked from the beginning of the first round trip to a place in it.
     fn distance(&self, n: u64) -> f64 {
-        let (length, k) = (self.upto[self.points.len() - 1], n % (2 * self.legs()));
-        let rounds = (n / (2 * self.legs())) as f64;
+        let (length, k) = (self.upto[self.points.len() - 1], n % self.round());
+        let rounds = (n / self.round()) as f64;
         let within = self.upto[self.point(n)];
+        if self.end == End::Round {
+            return rounds * length + within;
+        }
         rounds * 2.0 * length + if k <= self.legs() { within } else { 2.0 * length - within }
     }
 

@@ -7,7 +7,7 @@ use super::{
     geometry::{Aabb, Shape, Vec2, norm, sub},
     index::Grid,
     motion::{self, Drive, DriveModel},
-    movers::{Mover, ToAndFro, Wanderer},
+    movers::{Along, End, Mover, Wanderer},
     noise::Stream,
     power::Battery,
 };
@@ -238,8 +238,9 @@ pub fn population(scene: &Scene, chassis: &[Chassis]) -> Result<Population, Stri
     for part in scene.world.iter().filter(|p| &*p.role == "mover") {
         let args = Args { part, of: WORLD };
         let (mover, place) = match &*part.model {
-            "disc" => {
-                let (path, place) = ToAndFro::new(args)?;
+            "disc" | "walker" => {
+                let end = if &*part.model == "disc" { End::Back } else { End::Round };
+                let (path, place) = Along::new(args, end)?;
                 (Mover::Path(path), place)
             }
             "wanderer" => {

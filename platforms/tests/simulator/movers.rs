@@ -51,6 +51,36 @@ fn to_and_fro_with_a_phase() {
 }
 
 #[test]
+fn a_walker_goes_round() {
+    let walker = part(
+        "mover",
+        "guest",
+        "walker",
+        &[
+            ("radius", num(0.3)),
+            ("path", path(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])),
+            ("speed", num(0.5)),
+            ("phase", num(0.25)),
+        ],
+    );
+    // The round is 6 m.
+    let expected = |s: f64| match s {
+        s if s < 2.0 => [s, 0.0],
+        s if s < 3.0 => [2.0, s - 2.0],
+        s if s < 5.0 => [5.0 - s, 1.0],
+        s => [0.0, 6.0 - s],
+    };
+    let mut rig = rig(vec![walker], &[]);
+    for i in 0..200 {
+        let t = 0.37 * f64::from(i);
+        rig.poll(t);
+        let ([x, y], e) = (mover(&rig), expected((1.5 + 0.5 * t).rem_euclid(6.0)));
+        close(x, e[0], 1e-6);
+        close(y, e[1], 1e-6);
+    }
+}
+
+#[test]
 fn a_mover_may_stand() {
     for points in [vec![[1.0, 2.0]], vec![[1.0, 2.0], [1.0, 2.0]]] {
         let cart = part(

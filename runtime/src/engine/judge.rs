@@ -17,6 +17,7 @@ use crate::{
 use soifra_graph::{
     Execution, Function, Own, Run, Truth,
     eval::{Block, Env, Fault, FaultKind, Memory},
+    reason,
 };
 
 /// What conditions of the mission are about.
@@ -110,6 +111,9 @@ impl Env for Court<'_> {
     }
 
     fn service(&mut self, which: Function, args: &[f64], out: &mut [f64]) -> Result<(), FaultKind> {
+        if which == Function::TruePlace {
+            return self.true_place(args, out);
+        }
         let services = self.mission.services().ok_or(FaultKind::Unavailable("a service"))?;
         // Like an agent behind the last one: what it makes has numbers of its own.
         let instance = self.cast.instances.len() as u32;
@@ -145,6 +149,20 @@ impl Env for Court<'_> {
 }
 
 impl Court<'_> {
+    /// Registers of an optional point: where the mover of that number is.
+    fn true_place(&self, args: &[f64], out: &mut [f64]) -> Result<(), FaultKind> {
+        let truth = self.truth.ok_or(FaultKind::Unavailable("world truth"))?;
+        let ([number], [tag, at @ ..]) = (args, out) else { return Err(FaultKind::Malformed) };
+        let declared = self.scene.world.iter().filter(|p| &*p.role == "mover").count();
+        let movers = truth.movers();
+        let mover = if *number >= 0.0 { movers.iter().take(declared).nth(*number as usize) } else { None };
+        let reason = if mover.is_some() { 0.0 } else { reason::tag(reason::NO_SUCH_ITEM) };
+        let [x, y, z] = mover.map_or([0.0; 3], |(_, [x, y, z, ..])| [*x, *y, *z]);
+        let at: &mut [f64; 3] = at.try_into().map_err(|_| FaultKind::Malformed)?;
+        (*tag, *at) = (reason, [x, y, z]);
+        Ok(())
+    }
+
     /// The value of a block of one register.
     pub fn number(&mut self, block: &Block, frame: &mut [f64]) -> Result<f64, Fault> {
         let mission = self.mission;

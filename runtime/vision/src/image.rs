@@ -60,6 +60,12 @@ impl<'a> ImageView<'a> {
     pub fn data(&self) -> &'a [u8] {
         self.data
     }
+
+    /// The channels of a pixel.
+    pub fn pixel(&self, x: usize, y: usize) -> Option<&'a [u8]> {
+        let at = (y * self.width + x) * self.channels;
+        if x < self.width { self.data.get(at..at + self.channels) } else { None }
+    }
 }
 
 /// A grey image, owned: a plain value that the caller keeps between frames.

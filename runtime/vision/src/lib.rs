@@ -14,6 +14,7 @@
 //! | where does it stand once it is out of sight? | `known`, `landmarks` |
 //! | is it in the way, on which side is more room? | `course`, `turning` |
 //! | all of it on a frame | `look` |
+//! | who is there, who of them walks? | `person`, `clothes`, `people` over `ground` |
 //! | pictures for people | `overlay` |
 //!
 //! Frames: image x right, y down, pixels, pixel centres at whole numbers; body x forward, y left, z up; the level
@@ -24,6 +25,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "a comparison with NaN has to refuse; 2026-11-23")]
 
 pub mod attitude;
+pub mod clothes;
 mod consensus;
 pub mod contours;
 pub mod course;
@@ -31,6 +33,7 @@ pub mod edge;
 pub mod expansion;
 pub mod flow;
 pub mod follow;
+pub mod ground;
 pub mod image;
 pub mod known;
 pub mod landmarks;
@@ -38,6 +41,8 @@ pub mod lens;
 pub mod look;
 pub mod obstacle;
 pub mod overlay;
+pub mod people;
+pub mod person;
 pub mod points;
 pub mod reckoning;
 pub mod rectify;

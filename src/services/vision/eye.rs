@@ -19,6 +19,13 @@ use std::sync::{Arc, Once};
 /// That OpenCV leaves the threads to us.
 static SINGLE: Once = Once::new();
 
+/// Leaves the threads to us; what is computed does not depend on it.
+pub(super) fn alone() {
+    SINGLE.call_once(|| {
+        let _ = soifra_vision::single_thread();
+    });
+}
+
 /// How far back the speed is measured, s.
 const RECENT: f64 = 0.4;
 
@@ -27,7 +34,7 @@ const SLOWEST: f64 = 0.25;
 
 /// A reading of an inertial unit.
 #[derive(Clone, Copy)]
-struct Tilted {
+pub(super) struct Tilted {
     roll: f64,
     pitch: f64,
     rates: Rates,
@@ -36,13 +43,37 @@ struct Tilted {
 
 /// A reading of odometry.
 #[derive(Clone, Copy)]
-struct Reckoned {
+pub(super) struct Reckoned {
     place: [f64; 2],
     yaw: f64,
     forward: f64,
     left: f64,
     turn: f64,
     captured: f64,
+}
+
+impl Tilted {
+    /// From registers.
+    pub(super) fn of([roll, pitch, p, q, r, captured]: [f64; 6]) -> Tilted {
+        Tilted { roll, pitch, rates: Rates { roll: p, pitch: q, yaw: r }, captured }
+    }
+
+    /// The attitude of the body at an instant, by the rates; its yaw is given.
+    pub(super) fn attitude(&self, time: f64, yaw: f64) -> Attitude {
+        let later = time - self.captured;
+        Attitude {
+            roll: self.roll + self.rates.roll * later,
+            pitch: self.pitch + self.rates.pitch * later,
+            yaw,
+        }
+    }
+}
+
+impl Reckoned {
+    /// From registers.
+    pub(super) fn of([x, y, _, _, _, qz, qw, forward, left, _, _, _, turn, captured]: [f64; 14]) -> Reckoned {
+        Reckoned { place: [x, y], yaw: 2.0 * libm::atan2(qz, qw), forward, left, turn, captured }
+    }
 }
 
 /// What a call asks for beside the image.
@@ -57,23 +88,12 @@ struct Asked {
 /// Looks at an image. The registers: image, sight before?, reading of an inertial unit?, of odometry?, half width and
 /// margin of the body, thresholds low? and high?, window.
 pub fn look(args: &[f64], shelf: &dyn Shelf) -> Result<Result<Sight, Why>, FaultKind> {
-    // What it gives does not depend on it.
-    SINGLE.call_once(|| {
-        let _ = soifra_vision::single_thread();
-    });
+    alone();
     let mut rest = Registers(args);
     let [image] = rest.take()?;
     let before = rest.optional::<1>()?.map(|[n]| n);
-    let imu = rest.optional::<6>()?.map(|[roll, pitch, p, q, r, captured]| Tilted {
-        roll,
-        pitch,
-        rates: Rates { roll: p, pitch: q, yaw: r },
-        captured,
-    });
-    let odometry =
-        rest.optional::<14>()?.map(|[x, y, _, _, _, qz, qw, forward, left, _, _, _, turn, captured]| {
-            Reckoned { place: [x, y], yaw: 2.0 * libm::atan2(qz, qw), forward, left, turn, captured }
-        });
+    let imu = rest.optional()?.map(Tilted::of);
+    let odometry = rest.optional()?.map(Reckoned::of);
     let [half_width, margin] = rest.take()?;
     let (low, high) = (rest.optional::<1>()?, rest.optional::<1>()?);
     let thresholds = match (low, high) {
@@ -93,16 +113,16 @@ pub fn look(args: &[f64], shelf: &dyn Shelf) -> Result<Result<Sight, Why>, Fault
 }
 
 /// Registers that are taken from the front.
-struct Registers<'a>(&'a [f64]);
+pub(super) struct Registers<'a>(pub(super) &'a [f64]);
 
 impl Registers<'_> {
-    fn take<const N: usize>(&mut self) -> Result<[f64; N], FaultKind> {
+    pub(super) fn take<const N: usize>(&mut self) -> Result<[f64; N], FaultKind> {
         let (first, rest) = self.0.split_first_chunk::<N>().ok_or(FaultKind::Malformed)?;
         self.0 = rest;
         Ok(*first)
     }
 
-    fn optional<const N: usize>(&mut self) -> Result<Option<[f64; N]>, FaultKind> {
+    pub(super) fn optional<const N: usize>(&mut self) -> Result<Option<[f64; N]>, FaultKind> {
         let [tag] = self.take()?;
         let value = self.take()?;
         Ok((tag == 0.0).then_some(value))
@@ -171,27 +191,32 @@ fn see(frame: &Frame, before: Option<&Sight>, asked: &Asked) -> Result<Sight, Wh
     })
 }
 
-/// Where the body was at the image, and how it moved: readings are brought back to its instant by their own rates.
-fn moving(time: f64, before: Option<&Sight>, asked: &Asked) -> Result<(Stop, Motion), Why> {
-    let Some(o) = asked.odometry else {
-        // Straight ahead, at a speed that nobody knows.
-        return Ok((Stop { time, place: [time, 0.0], yaw: 0.0 }, Motion { course: 0.0, speed: 1.0 }));
-    };
+/// Where the body was at an instant.
+pub(super) fn stop(time: f64, o: &Reckoned, imu: Option<&Tilted>) -> Stop {
     let later = time - o.captured;
-    let turn = asked.imu.map_or(o.turn, |i| i.rates.yaw);
+    let turn = imu.map_or(o.turn, |i| i.rates.yaw);
     let yaw = o.yaw + turn * later;
     let (s, c) = libm::sincos(yaw);
     let place = [
         o.place[0] + (o.forward * c - o.left * s) * later,
         o.place[1] + (o.forward * s + o.left * c) * later,
     ];
-    let stop = Stop { time, place, yaw };
+    Stop { time, place, yaw }
+}
+
+/// Where the body was at the image, and how it moved: readings are brought back to its instant by their own rates.
+fn moving(time: f64, before: Option<&Sight>, asked: &Asked) -> Result<(Stop, Motion), Why> {
+    let Some(o) = asked.odometry else {
+        // Straight ahead, at a speed that nobody knows.
+        return Ok((Stop { time, place: [time, 0.0], yaw: 0.0 }, Motion { course: 0.0, speed: 1.0 }));
+    };
+    let stop = stop(time, &o, asked.imu.as_ref());
     let known = before.map_or(&[][..], |b| &b.stops[..]);
     let moving = match motion(known, &stop) {
         // Nothing to compare with yet: what the reading says.
         Err(Why::TooShort) => {
             let slip = if o.forward == 0.0 && o.left == 0.0 { 0.0 } else { libm::atan2(o.left, o.forward) };
-            Motion { course: yaw + slip, speed: libm::hypot(o.forward, o.left) }
+            Motion { course: stop.yaw + slip, speed: libm::hypot(o.forward, o.left) }
         }
         other => other?,
     };
@@ -202,12 +227,7 @@ fn moving(time: f64, before: Option<&Sight>, asked: &Asked) -> Result<(Stop, Mot
 fn moment(stop: &Stop, moving: &Motion, asked: &Asked, optics: &Optics) -> Moment {
     let level = Tilted { roll: 0.0, pitch: 0.0, rates: Rates::default(), captured: stop.time };
     let i = asked.imu.unwrap_or(level);
-    let later = stop.time - i.captured;
-    let body = Attitude {
-        roll: i.roll + i.rates.roll * later,
-        pitch: i.pitch + i.rates.pitch * later,
-        yaw: stop.yaw,
-    };
+    let body = i.attitude(stop.time, stop.yaw);
     let at = body.level(optics.at);
     let place = match asked.odometry {
         Some(_) => [stop.place[0] + at[0], stop.place[1] + at[1]],

@@ -1,6 +1,7 @@
 //! The vision services: what a mission sees, out of images.
 
 mod eye;
+mod people;
 mod published;
 mod sight;
 
@@ -16,8 +17,16 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
         let made = eye::look(args, shelf)?;
         return optional(out, made.map(|sight| [shelf.put(Arc::new(sight))]));
     }
+    if which == Function::WatchPeople {
+        let made = people::watch(args, shelf)?;
+        return optional(out, made.map(|people| [shelf.put(Arc::new(people))]));
+    }
     let (number, rest) = args.split_first().ok_or(FaultKind::Malformed)?;
     let object = shelf.get(*number).ok_or(FaultKind::Unavailable("this sight"))?;
+    if which == Function::PeopleSeen {
+        let people = object.as_any().downcast_ref::<people::Crowd>().ok_or(FaultKind::Malformed)?;
+        return people.seen(out);
+    }
     let sight = object.as_any().downcast_ref::<Sight>().ok_or(FaultKind::Malformed)?;
     match (which, rest) {
         (Function::Viewpoint, []) => {

@@ -2,7 +2,8 @@
 
 use crate::sim::{args::Args, body::Body, scene};
 use soifra_camera::{
-    Lens, Light, Mesh, PartIndex, PartPose, Point, Pose, Rotation, Scene as Pictured, Surface, Texture,
+    Clothes, Figure, Lens, Light, Mesh, PartIndex, PartPose, Point, Pose, Rotation, Scene as Pictured,
+    Surface, Texture,
 };
 use soifra_runtime::{
     Scene, Time,
@@ -28,13 +29,31 @@ pub struct Studio {
     pub(super) scene: Pictured,
     pub(super) light: Light,
     /// One for each body, robots first.
-    parts: Vec<PartIndex>,
+    looks: Vec<Look>,
     /// By platform and sensor.
     cameras: BTreeMap<(u32, u32), Mounted>,
     /// Platform of each robot.
     platforms: Vec<u32>,
     seed: u64,
     names: Vec<String>,
+}
+
+/// What a body looks like.
+#[derive(Debug, Clone)]
+enum Look {
+    /// An upright cylinder.
+    Solid(PartIndex),
+    /// A person who walks.
+    Figure(Box<Figure>),
+}
+
+impl Look {
+    fn figure(&self) -> Option<&Figure> {
+        match self {
+            Look::Figure(figure) => Some(figure),
+            Look::Solid(_) => None,
+        }
+    }
 }
 
 /// A camera of a platform.
@@ -74,7 +93,7 @@ impl Materials<'_> {
                             args.positive("repeat")?,
                         )
                     }
-                    _ => (Texture::cloth(colour(args)?), 1.0),
+                    _ => (Texture::cloth(colour(args, "color")?), 1.0),
                 }
             }
             None => (Texture::by_name(name).unwrap_or_else(|| Texture::plain([200; 3])), 1.0),
@@ -86,11 +105,11 @@ impl Materials<'_> {
 }
 
 /// `#rrggbb`
-fn colour(args: Args<'_>) -> Result<[u8; 3], String> {
-    let text = args.text("color");
+fn colour(args: Args<'_>, name: &str) -> Result<[u8; 3], String> {
+    let text = args.text(name);
     let digits = text.strip_prefix('#').filter(|d| d.len() == 6);
     let value = digits.and_then(|d| u32::from_str_radix(d, 16).ok());
-    let value = value.ok_or_else(|| args.wrong("`color` is not as #rrggbb"))?;
+    let value = value.ok_or_else(|| args.wrong(format_args!("`{name}` is not as #rrggbb")))?;
     Ok([(value >> 16) as u8, (value >> 8) as u8, value as u8])
 }
 
@@ -126,22 +145,27 @@ impl Studio {
         pictured.fixed = fixed;
         let own = pictured.add_texture(Texture::cloth(ROBOT));
         let movers: Vec<&Part> = scene.world.iter().filter(|p| &*p.role == "mover").collect();
-        let mut parts = Vec::new();
+        let mut looks = Vec::new();
         for (i, body) in bodies.iter().enumerate() {
             let mover = i.checked_sub(scene.bodies().len()).and_then(|m| movers.get(m));
+            let [low, high] = body.span(0);
+            if let Some(part) = mover.filter(|p| &*p.model == "walker") {
+                let figure = Figure::new(&mut pictured, high - low, &clothes(Args { part, of: WORLD })?);
+                looks.push(Look::Figure(Box::new(figure)));
+                continue;
+            }
             let surface = match mover {
                 Some(part) => materials.surface(&mut pictured, Args { part, of: WORLD }.text("material"))?,
                 None => Surface { texture: own, repeat: 1.0 },
             };
             let mut mesh = Mesh::new();
-            let [low, high] = body.span(0);
             mesh.cylinder([0.0; 3], body.radius, high - low, SIDES, surface);
-            parts.push(pictured.add_part(mesh));
+            looks.push(Look::Solid(pictured.add_part(mesh)));
         }
         Ok(Some(Studio {
             light: light(scene)?,
             scene: pictured,
-            parts,
+            looks,
             cameras,
             platforms: scene.bodies().iter().map(|r| r.platform).collect(),
             seed: scene.seed,
@@ -154,26 +178,38 @@ impl Studio {
         self.cameras.get(&(*self.platforms.get(robot as usize)?, sensor))
     }
 
-    /// What a robot sees at an instant, as numbers: its pose, then those of all other bodies.
+    /// What a robot sees at an instant, as numbers: its pose, those of all other bodies, and how far each figure is in its
+    /// stride.
     pub fn view(&self, robot: u32, bodies: &[Body], at: Time) -> Vec<f64> {
-        let mut view = Vec::with_capacity(7 * bodies.len());
+        let mut view = Vec::with_capacity(8 * bodies.len());
         if let Some(own) = bodies.get(robot as usize) {
             view.extend(own.pose(at));
         }
         for body in bodies.iter().enumerate().filter(|(i, _)| *i != robot as usize).map(|(_, b)| b) {
             view.extend(body.pose(at));
         }
+        for (body, look) in bodies.iter().zip(&self.looks) {
+            view.extend(look.figure().map(|f| (body.place(at.0).path / f.stride()).rem_euclid(1.0)));
+        }
         view
     }
 
     /// The pose of the robot, and the parts that a view places; none when it is no view of this scene.
     pub(super) fn placed(&self, robot: u32, view: &[f64]) -> Option<(Pose, Vec<PartPose>)> {
-        let (poses, []) = view.as_chunks::<7>() else { return None };
-        let (own, others) = poses.split_first()?;
-        let known = self.parts.iter().enumerate().filter(|(i, _)| *i != robot as usize).map(|(_, p)| *p);
-        let parts: Vec<PartPose> =
-            known.zip(others).map(|(part, p)| PartPose { part, pose: pose(p) }).collect();
-        (parts.len() == others.len()).then(|| (pose(own), parts))
+        let (poses, phases) = view.split_at_checked(7 * self.looks.len())?;
+        let (own, others) = poses.as_chunks::<7>().0.split_first()?;
+        let known = self.looks.iter().enumerate().filter(|(i, _)| *i != robot as usize).map(|(_, l)| l);
+        let (mut parts, mut phases) = (Vec::new(), phases.iter());
+        for (look, p) in known.zip(others) {
+            match look {
+                Look::Solid(part) => parts.push(PartPose { part: *part, pose: pose(p) }),
+                Look::Figure(figure) => {
+                    let [x, y, z, _, _, qz, qw] = *p;
+                    figure.place([x, y, z], 2.0 * libm::atan2(qz, qw), *phases.next()?, &mut parts);
+                }
+            }
+        }
+        phases.next().is_none().then(|| (pose(own), parts))
     }
 
     /// Names the noise of a robot's camera.
@@ -223,6 +259,17 @@ impl Mounted {
             tilt: self.tilt,
         }
     }
+}
+
+/// What a walker wears and is.
+fn clothes(args: Args<'_>) -> Result<Clothes, String> {
+    Ok(Clothes {
+        skin: colour(args, "skin")?,
+        hair: colour(args, "hair")?,
+        shirt: colour(args, "shirt")?,
+        trousers: colour(args, "trousers")?,
+        shoes: colour(args, "shoes")?,
+    })
 }
 
 fn light(scene: &Scene) -> Result<Light, String> {

@@ -6,6 +6,7 @@ mod approach;
 mod contact;
 mod gaps;
 mod geometry;
+mod people;
 mod places;
 mod robustness;
 mod scene;

@@ -32,8 +32,11 @@ impl Compiler<'_> {
             | F::Diverging
             | F::CourseAhead
             | F::NearestPairAhead
+            | F::WatchPeople
+            | F::PeopleSeen
             | F::KnownMap
             | F::TrueMap
+            | F::TruePlace
             | F::EmptyMap
             | F::Observe
             | F::Localise
