@@ -224,6 +224,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "A pattern: `plaster`, `bricks`, `planks`, `tiles`, `checker`, `speckle`, `concrete` or `carpet`, that comes again after `repeat`, and how much infrared it reflects",
     ),
     (
+        "material",
+        "image(file: Text, width: Length = 1 m, reflectance: Number = 0.8)",
+        "An image file, PNG or JPEG of at most 4096 pixels a side, as wide as `width` and as high as its proportions say, which comes again beside and above itself; and how much infrared it reflects",
+    ),
+    (
         "topic",
         "channel(delay: Duration = 1 us, loss: Number = 0, range: Length? = none, lifetime: Duration? = none, capacity: Int = 16)",
         "How messages travel: delay, chance of loss for each receiver, radio range (everywhere when none), how long the latest message counts (two periods of the publisher when none), how many senders are heard or messages wait",

@@ -7,7 +7,7 @@ use soifra_camera::{
 use soifra_runtime::{
     Scene, Time,
     objects::Optics,
-    scene::{Part, PlatformScene},
+    scene::{ImageFile, Part, PlatformScene},
 };
 use std::collections::BTreeMap;
 
@@ -55,6 +55,7 @@ pub struct Mounted {
 struct Materials<'s> {
     declared: BTreeMap<&'s str, &'s Part>,
     known: BTreeMap<String, Surface>,
+    images: &'s [ImageFile],
 }
 
 impl Materials<'_> {
@@ -74,6 +75,7 @@ impl Materials<'_> {
                             args.positive("repeat")?,
                         )
                     }
+                    "image" => (self.image(args)?, args.positive("width")?),
                     _ => (Texture::cloth(colour(args)?), 1.0),
                 }
             }
@@ -82,6 +84,15 @@ impl Materials<'_> {
         let surface = Surface { texture: scene.add_texture(texture), repeat };
         self.known.insert(name.to_string(), surface);
         Ok(surface)
+    }
+
+    /// What is in the image file of a material.
+    fn image(&self, args: Args<'_>) -> Result<Texture, String> {
+        let name = args.text("file");
+        let file = self.images.iter().find(|f| f.name == name);
+        let pixels = file.and_then(|f| f.pixels.as_deref());
+        let pixels = pixels.ok_or_else(|| args.wrong(format_args!("nobody has read the image `{name}`")))?;
+        Texture::from_rgb8(pixels.width, pixels.height, &pixels.data).map_err(|e| args.wrong(e))
     }
 }
 
@@ -113,7 +124,8 @@ impl Studio {
         }
         let mut pictured = Pictured::new();
         let declared = scene.world.iter().filter(|p| &*p.role == "material").map(|p| (p.name.as_str(), p));
-        let mut materials = Materials { declared: declared.collect(), known: BTreeMap::new() };
+        let mut materials =
+            Materials { declared: declared.collect(), known: BTreeMap::new(), images: &scene.images };
         let mut fixed = Mesh::new();
         for part in &scene.world {
             build(part, scene, &mut pictured, &mut materials, &mut fixed)?;
