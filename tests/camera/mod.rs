@@ -1,5 +1,6 @@
 //! Cameras: the same images whatever the threads, in replays, and only where somebody reads them.
 
+mod exposure;
 mod image_files;
 
 use crate::support::{code, file, folder, soifra, stderr};

@@ -48,6 +48,8 @@ pub struct Mounted {
     /// Standard deviation, of 255.
     pub(super) noise: f64,
     pub(super) gain: f64,
+    /// How long the shutter is open, s.
+    pub(super) exposure: f64,
     name: String,
 }
 
@@ -166,8 +168,17 @@ impl Studio {
         self.cameras.get(&(*self.platforms.get(robot as usize)?, sensor))
     }
 
-    /// What a robot sees at an instant, as numbers: its pose, then those of all other bodies.
-    pub fn view(&self, robot: u32, bodies: &[Body], at: Time) -> Vec<f64> {
+    /// What a camera of a robot sees at an instant, as numbers: the robot's pose, then those of all other bodies. Where
+    /// the shutter is open for a while, all of them as it opens, then all of them as it closes.
+    pub fn view(&self, robot: u32, sensor: u32, bodies: &[Body], at: Time) -> Vec<f64> {
+        let exposure = self.camera(robot, sensor).map_or(0.0, |c| c.exposure);
+        if exposure > 0.0 {
+            let (own, others): (Vec<_>, Vec<_>) =
+                bodies.iter().enumerate().partition(|(i, _)| *i == robot as usize);
+            let around: Vec<[[f64; 7]; 2]> =
+                own.into_iter().chain(others).map(|(_, b)| b.poses_around(at, exposure)).collect();
+            return [0, 1].into_iter().flat_map(|k| around.iter().flat_map(move |p| p[k])).collect();
+        }
         let mut view = Vec::with_capacity(7 * bodies.len());
         if let Some(own) = bodies.get(robot as usize) {
             view.extend(own.pose(at));
@@ -201,6 +212,18 @@ fn pose(p: &[f64; 7]) -> Pose {
     Pose { position: [x, y, z], rotation: Rotation::from_quaternion([qw, qx, qy, qz]) }
 }
 
+/// How long the shutter is open, s: no longer than until the next image.
+fn exposure(args: Args<'_>) -> Result<f64, String> {
+    if !args.has("exposure") {
+        return Ok(0.0);
+    }
+    let exposure = args.duration("exposure")?;
+    match args.has("period") && exposure > args.duration("period")? {
+        true => Err(args.wrong("`exposure` is longer than `period`")),
+        false => Ok(exposure.seconds()),
+    }
+}
+
 impl Mounted {
     fn new(platform: &PlatformScene, part: &Part) -> Result<Mounted, String> {
         let of = format!("platform `{}`", platform.name);
@@ -220,6 +243,7 @@ impl Mounted {
             mount: Pose { position: args.vector("at")?, rotation },
             noise: 255.0 * args.at_least_zero("noise")?,
             gain: args.at_least_zero("gain")?,
+            exposure: exposure(args)?,
             name: part.name.clone(),
         })
     }
