@@ -44,7 +44,7 @@ mission look {{
 
 /// The last image of a run.
 fn last(dir: &Path, name: &str, exposure: &str, turn: &str) -> Arc<Frame> {
-    let path = file(dir, &format!("{name}.soi"), &mission(exposure, turn));
+    let path = file(dir, &format!("{name}.soi"), mission(exposure, turn));
     let trace = dir.join(format!("{name}.mcap")).to_string_lossy().into_owned();
     for way in [
         &["run", &path, "--seed", "3", "--trace", &trace][..],
@@ -92,7 +92,7 @@ fn a_turning_robots_image_is_smeared_the_way_it_turns_and_a_standing_ones_is_not
 #[test]
 fn an_exposure_ends_before_the_next_image_begins() {
     let dir = folder("camera_exposure_long");
-    let path = file(&dir, "long.soi", &mission(", exposure: 120 ms", "0 deg/s"));
+    let path = file(&dir, "long.soi", mission(", exposure: 120 ms", "0 deg/s"));
     let o = soifra(&["run", &path, "--trace", "none"]);
     assert_eq!(code(&o), 2, "{}", stderr(&o));
     assert!(stderr(&o).contains("exposure"), "{}", stderr(&o));
