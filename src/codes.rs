@@ -188,6 +188,16 @@ pub const PAGES: &[Page] = &[
         "Image files do not tell how many of them were taken a second: say it with `--rate 20Hz`, or as `rate` of the profile's `recorded`. It is above zero, and at most 1 MHz. A .y4m file has a rate of its own, which `--rate` replaces; a trace has the times of its images, and takes no rate.",
     ),
     page(
+        "S9034",
+        "The image of a material cannot be used",
+        "A world covers things with image files: `material door = image(\"posters/door.png\", width: 1.2 m)`. The path is taken from the folder of the file that names it. The report says what is wrong with it: there is no such file (and which one has a name like it), it is damaged or cut off, it is neither PNG nor JPEG, its colours are neither grey nor RGB, or it has more than 4096 pixels along a side.",
+    ),
+    page(
+        "S9035",
+        "An image file has changed since the run",
+        "What cameras saw is rendered again from the world of a trace. A trace knows the image files of its materials by path and digest; one of them is gone, or holds other pixels. Put back the file that the run was made with, and start the command in the folder in which the run was started.",
+    ),
+    page(
         "S9999",
         "A defect of soifra",
         "soifra met a state it holds impossible. It exits with 70. Please report it with the command line and the files.",

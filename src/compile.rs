@@ -1,12 +1,13 @@
 //! From what the user named to a checked graph: a source is compiled, a graph file is loaded and verified.
 
 use crate::{
-    files, graph_file, relative,
+    files, graph_file, image_files, relative,
     report::{Findings, Refusal},
     services,
 };
 use soifra_graph::{Diagnostic, Graph, Severity, Span, Value, did_you_mean};
 use soifra_lang::{CheckOptions, TestCase};
+use soifra_runtime::{Mission, scene::ImageFile};
 
 /// A graph that passed every check, with the warnings and tests that came along.
 pub struct Compiled {
@@ -16,6 +17,15 @@ pub struct Compiled {
     pub findings: Findings,
     /// `test` blocks of the source; none for a graph file.
     pub tests: Vec<TestCase>,
+    /// Image files that the materials of its world name.
+    pub images: Vec<ImageFile>,
+}
+
+impl Compiled {
+    /// The mission with its code.
+    pub fn mission(self) -> Result<Mission, Refusal> {
+        crate::execute::load(self.graph, self.images)
+    }
 }
 
 /// A file that passed every check. One of agents or profiles alone has no graph.
@@ -28,6 +38,8 @@ pub struct Checked {
     pub findings: Findings,
     /// `test` blocks.
     pub tests: Vec<TestCase>,
+    /// Image files that the materials of the graph's world name.
+    pub images: Vec<ImageFile>,
 }
 
 /// Missions and their timing.
@@ -82,7 +94,9 @@ pub fn compile_with(
         return Err(missing("--mission", "mission", name, known));
     }
     match checked.graph {
-        Some(graph) => Ok(Compiled { graph, findings: checked.findings, tests: checked.tests }),
+        Some(graph) => {
+            Ok(Compiled { graph, findings: checked.findings, tests: checked.tests, images: checked.images })
+        }
         None => Err(Refusal::about(
             path,
             "S0701",
@@ -118,14 +132,17 @@ pub fn check_with(path: &str, options: &CheckOptions, timings: &mut Timings) -> 
     *timings = std::mem::take(&mut checked.timings);
     if let Some(graph) = &mut checked.graph {
         relative::name_from(path, &mut graph.sources);
+        image_files::name_from_mission(graph);
     }
     let mut diagnostics = checked.diagnostics;
     diagnostics.extend(checked.graph.iter().flat_map(services::missing));
+    let (images, wrong) = checked.graph.as_ref().map(|g| image_files::read(path, g)).unwrap_or_default();
+    diagnostics.extend(wrong);
     let findings = Findings { diagnostics, sources: checked.sources };
     if findings.errors() > 0 {
         return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
     }
-    Ok(Checked { graph: checked.graph, missions: checked.missions, findings, tests: checked.tests })
+    Ok(Checked { graph: checked.graph, missions: checked.missions, findings, tests: checked.tests, images })
 }
 
 fn load(path: &str, text: &str, options: &CheckOptions, timings: &mut Timings) -> Result<Checked, Refusal> {
@@ -144,14 +161,16 @@ fn load(path: &str, text: &str, options: &CheckOptions, timings: &mut Timings) -
     }
     let mut diagnostics = soifra_lang::verify(&graph);
     diagnostics.extend(services::missing(&graph));
+    let (images, wrong) = image_files::read(path, &graph);
+    diagnostics.extend(wrong);
     let findings = Findings { diagnostics, sources: graph.sources.clone() };
     if findings.errors() > 0 {
         return Err(Refusal { findings, exit: crate::exit::Exit::WrongInput });
     }
     // What the runtime asks of a graph besides: a source always gives it, a file need not.
-    crate::execute::load(graph.clone())?;
+    crate::execute::load(graph.clone(), images.clone())?;
     let missions = vec![graph.name.to_string()];
-    Ok(Checked { graph: Some(graph), missions, findings, tests: Vec::new() })
+    Ok(Checked { graph: Some(graph), missions, findings, tests: Vec::new(), images })
 }
 
 /// A parameter as `--set` gives it: `name=value`.

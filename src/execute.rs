@@ -12,17 +12,19 @@ use soifra_graph::{Diagnostic, Graph, Value, span::Source};
 use soifra_platforms::sim::Simulator;
 use soifra_runtime::{
     Engine, Mission, NoTrace, Outcome, Pacer, Platform, RunReport, Scene, Settings, TraceSink,
+    scene::ImageFile,
 };
 use std::{
     collections::BTreeMap,
     sync::{Arc, atomic::AtomicBool},
 };
 
-/// Compiles the code of a graph.
-pub fn load(graph: Graph) -> Result<Mission, Refusal> {
+/// Compiles the code of a graph, whose materials name these image files.
+pub fn load(graph: Graph, images: Vec<ImageFile>) -> Result<Mission, Refusal> {
     let sources = graph.sources.clone();
     let mission = Mission::load(graph).map_err(|diagnostics| refuse(diagnostics, sources))?;
-    Ok(mission.with_services(Arc::new(Everything)).with_cameras(Arc::new(Everywhere::default())))
+    let mission = mission.with_services(Arc::new(Everything)).with_cameras(Arc::new(Everywhere::default()));
+    Ok(mission.with_images(images))
 }
 
 /// Settings for one run.

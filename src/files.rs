@@ -87,16 +87,22 @@ fn near(path: &str) -> String {
     let p = Path::new(path);
     let name = p.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = p.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let Ok(entries) = fs::read_dir(folder) else {
+    let Some(names) = names_in(folder) else {
         return format!("there is no folder `{}` either", folder.display());
     };
-    let mut names: Vec<String> =
-        entries.flatten().take(10_000).map(|e| e.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
     match soifra_graph::did_you_mean(&name, names.iter().map(String::as_str)) {
         Some(n) => format!("did you mean `{}`?", p.with_file_name(n).display()),
         None => "check the path; it is taken from the current folder".into(),
     }
+}
+
+/// Names of what is in a folder, sorted; of a very full one some of them. None where there is no such folder.
+pub fn names_in(folder: &Path) -> Option<Vec<String>> {
+    let entries = fs::read_dir(folder).ok()?;
+    let mut names: Vec<String> =
+        entries.flatten().take(10_000).map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    Some(names)
 }
 
 /// Writes a file, making its folder when there is none.

@@ -14,6 +14,7 @@ pub mod fuzz;
 pub mod golden;
 pub mod graph_file;
 pub mod graph_view;
+pub mod image_files;
 pub mod interrupt;
 mod last_resort;
 mod mermaid;

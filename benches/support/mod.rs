@@ -130,7 +130,7 @@ impl Compiled {
         let sets: Vec<(String, String)> = sets.iter().map(|(n, v)| ((*n).into(), v.clone())).collect();
         let values = compile::settings(&compiled.graph, &sets).unwrap_or_else(|r| refused(r));
         let settings = execute::settings(&compiled.graph, 1, &values, 1);
-        let mission = execute::load(compiled.graph).unwrap_or_else(|r| refused(r));
+        let mission = execute::load(compiled.graph, compiled.images).unwrap_or_else(|r| refused(r));
         Compiled { mission, settings }
     }
 

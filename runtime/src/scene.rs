@@ -4,7 +4,7 @@
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use soifra_graph::{Name, Type, Value};
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Everything that stands, moves or drives, as values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,34 @@ pub struct Scene {
     /// What goes wrong on purpose.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Part>,
+    /// Image files that materials of the world name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub images: Vec<ImageFile>,
+}
+
+/// An image file that a material of a world names. Whoever opens files reads it; a trace knows it by its digest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ImageFile {
+    /// As materials name it: from the folder of the mission.
+    pub name: String,
+    /// Where it lies, from the folder in which the run was started.
+    pub path: String,
+    /// Of its size and pixels, as of the images of a camera, in hexadecimal.
+    pub digest: String,
+    /// What is in it; nothing as long as nobody has read it.
+    #[serde(skip)]
+    pub pixels: Option<Arc<Pixels>>,
+}
+
+/// An image as RGB, 8 bits each.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// Pixels a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Row by row from the upper left.
+    pub data: Vec<u8>,
 }
 
 /// A component with its arguments as values.

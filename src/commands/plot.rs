@@ -3,7 +3,7 @@
 use super::replay::unreadable;
 use crate::{
     exit::Exit,
-    files, output,
+    files, image_files, output,
     plot::{self, Drawing, Gantt, SelectError, Selection, Sequence, Sheet},
     report::Refusal,
     trace_file::Reader,
@@ -189,6 +189,8 @@ impl Arguments {
                 (Picture::Sequence(chart), rest)
             }
             Kind::Frames => {
+                // Images of a world that has changed since would be none of the run.
+                image_files::again(&reader.header().scene.images)?;
                 let sheet = Sheet::read(reader, &selection, limit).map_err(unreadable)?;
                 let rest = sheet.rest();
                 (Picture::Sheet(sheet), rest)

@@ -3,7 +3,7 @@
 use crate::{
     execute,
     exit::Exit,
-    graph_file,
+    graph_file, image_files,
     output::{self, Format},
     report::{Findings, Refusal},
     trace_file::{Reader, TraceError},
@@ -69,7 +69,8 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     };
     let (from_s, before) = snapshot.as_ref().map_or((0.0, 0), |s| (s.t.seconds(), s.next));
     let header = reader.header().clone();
-    let mission = execute::load(graph(&a.trace, &header.graph_json)?)?;
+    let images = image_files::again(&header.scene.images)?;
+    let mission = execute::load(graph(&a.trace, &header.graph_json)?, images)?;
     let settings =
         Settings { seed: header.seed(), params: header.params.clone(), threads: execute::threads(a.threads) };
 

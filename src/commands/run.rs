@@ -105,7 +105,7 @@ pub fn run(a: &Arguments) -> Result<Exit, Refusal> {
     let graph_digest = graph_file::digest(&compiled.graph);
     let threads = execute::threads(a.threads);
     let settings = execute::settings(&compiled.graph, a.seed, &values, threads);
-    let mission = execute::load(compiled.graph)?;
+    let mission = execute::load(compiled.graph, compiled.images)?;
     let prepared = execute::Prepared::new(&mission, settings)?;
 
     let path = match a.trace.as_deref() {

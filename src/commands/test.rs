@@ -164,8 +164,7 @@ fn file(path: &str, a: &Arguments, pool: Option<&rayon::ThreadPool>) -> Result<V
     let mut entries = Vec::new();
     let main = checked.graph.as_ref().map(|g| g.name.to_string());
     for case in checked.tests.iter().filter(|t| is_in(t, &checked.findings.sources, path)) {
-        let mission =
-            execute::load(compile::compile_with(path, None, Some(&case.mission), Some(&case.name))?.graph)?;
+        let mission = compile::compile_with(path, None, Some(&case.mission), Some(&case.name))?.mission()?;
         let place = Place { path, at: case.at, sources: &checked.findings.sources };
         entries.push(test(&place, case, &mission, pool)?);
     }
@@ -173,7 +172,7 @@ fn file(path: &str, a: &Arguments, pool: Option<&rayon::ThreadPool>) -> Result<V
         let at = golden_path(path);
         if a.accept || at.exists() {
             let name = format!("golden of {}", main.unwrap_or_default());
-            let now = gather_golden(&execute::load(graph)?)?;
+            let now = gather_golden(&execute::load(graph, checked.images)?)?;
             let failure = if a.accept { accept(&at, &now)? } else { compare(&at, &now)? };
             let whole = [Source { path: path.into(), text: String::new() }];
             let place = Place { path, at: Span::default(), sources: &whole };

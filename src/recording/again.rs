@@ -1,6 +1,7 @@
 //! Has images again that a trace tells of, whether they were rendered or recorded.
 
 use super::{Care, Written, open_at};
+use crate::image_files;
 use soifra_platforms::{recording::Footage, sim::camera::Rendered};
 use soifra_runtime::{
     Scene, Time,
@@ -23,7 +24,9 @@ struct Again {
 impl Cameras for Everywhere {
     fn of(&self, scene: &Scene) -> Option<Box<dyn Retake>> {
         let Some(opened) = open_at(scene, Care::WhenWanted, self.depth).ok()? else {
-            return Rendered.of(scene);
+            // What has changed since shows other images, which is noticed by their digests.
+            let images = image_files::again(&scene.images).ok()?;
+            return Rendered.of(&Scene { images, ..scene.clone() });
         };
         let film = |(robot, sensor, written): &(u32, u32, Written)| match written {
             Written::Images { shots, .. } => Some(((*robot, *sensor), shots.show().ok()?)),

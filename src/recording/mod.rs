@@ -15,7 +15,7 @@ mod y4m;
 
 pub use again::Everywhere;
 pub use name::name;
-pub use pictures::{Decoded, decode};
+pub use pictures::{Decoded, decode, read};
 pub use trouble::Trouble;
 pub use y4m::Y4m;
 

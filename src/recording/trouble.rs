@@ -53,6 +53,11 @@ impl Trouble {
         self
     }
 
+    /// Whether size and channels are such as can be taken.
+    pub fn fits(&self) -> bool {
+        self.code != NOT_FITTING
+    }
+
     /// What is seen.
     pub fn seen(&self) -> &str {
         &self.seen

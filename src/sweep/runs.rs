@@ -42,8 +42,8 @@ pub fn execute(
                 compiled.findings.print();
             }
             let digest = graph_file::digest(&compiled.graph);
-            tests = compiled.tests;
-            missions.insert(case.platform.clone(), (run::load(compiled.graph)?, digest));
+            tests.clone_from(&compiled.tests);
+            missions.insert(case.platform.clone(), (compiled.mission()?, digest));
         }
         let graph = missions[&case.platform].0.graph();
         let set = compile::with_test(&tests, plan.test.as_deref(), case.set.clone());

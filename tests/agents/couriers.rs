@@ -26,7 +26,7 @@ fn run(test: &str, seed: u64) -> (Vec<Record>, RunReport) {
     let compiled = compile::compile_with(FILE, None, None, Some(test));
     let graph = compiled.unwrap_or_else(|r| panic!("{}", r.findings.render(false))).graph;
     let settings = execute::settings(&graph, seed, &[], 1);
-    let mission = execute::load(graph).unwrap_or_else(|r| panic!("{}", r.findings.render(false)));
+    let mission = execute::load(graph, Vec::new()).unwrap_or_else(|r| panic!("{}", r.findings.render(false)));
     let prepared = execute::Prepared::new(&mission, settings);
     let prepared = prepared.unwrap_or_else(|r| panic!("{}", r.findings.render(false)));
     let mut kept = Kept(Vec::new());

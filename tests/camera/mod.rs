@@ -1,5 +1,8 @@
 //! Cameras: the same images whatever the threads, in replays, and only where somebody reads them.
 
+mod exposure;
+mod image_files;
+
 use crate::support::{code, file, folder, soifra, stderr};
 
 /// A robot that looks and drives, and one that has a camera and does not look.

@@ -87,6 +87,7 @@ pub fn scene() -> Scene {
             robot("r3", (0.01, 0.05), (0.1, 0.235)),
         ],
         faults: Vec::new(),
+        images: Vec::new(),
     }
 }
 

@@ -101,8 +101,8 @@ const TABLE: &[(&str, &str, &str)] = &[
     ),
     (
         "sensor",
-        "camera(width: Int, height: Int, field_of_view: Angle, at: Vector<base_link>, period: Duration, latency: Duration = 0 s, tilt: Angle = 0, noise: Number = 0.008, gain: Number = 1, k1: Number = 0, k2: Number = 0) -> Image",
-        "RGB images of the world from `at` on the robot, looking ahead and `tilt` down; the field of view is that of a row. Noise is the standard deviation of every channel, relative to white; gain is the exposure; k1 and k2 are the radial distortion of the lens. Without anybody who reads it nothing is rendered",
+        "camera(width: Int, height: Int, field_of_view: Angle, at: Vector<base_link>, period: Duration, latency: Duration = 0 s, tilt: Angle = 0, noise: Number = 0.008, gain: Number = 1, k1: Number = 0, k2: Number = 0, exposure: Duration? = none) -> Image",
+        "RGB images of the world from `at` on the robot, looking ahead and `tilt` down; the field of view is that of a row. Noise is the standard deviation of every channel, relative to white; gain is a factor for all that is bright; k1 and k2 are the radial distortion of the lens; `exposure` is how long the shutter is open around the instant of the image, which blurs what moves (none: it is sharp). Without anybody who reads it nothing is rendered",
     ),
     (
         "sensor",
@@ -227,6 +227,11 @@ const TABLE: &[(&str, &str, &str)] = &[
         "material",
         "textured(texture: Text, repeat: Length = 1 m, reflectance: Number = 0.8)",
         "A pattern: `plaster`, `bricks`, `planks`, `tiles`, `checker`, `speckle`, `concrete` or `carpet`, that comes again after `repeat`, and how much infrared it reflects",
+    ),
+    (
+        "material",
+        "image(file: Text, width: Length = 1 m, reflectance: Number = 0.8)",
+        "An image file, PNG or JPEG of at most 4096 pixels a side, as wide as `width` and as high as its proportions say, which comes again beside and above itself; and how much infrared it reflects",
     ),
     (
         "topic",

@@ -303,8 +303,11 @@ fn add_mesh(
     let turn = |p: Point| if still { p } else { rotation.map(|row| dot(row, p)) };
     for triangle in &mesh.triangles {
         let corners = triangle.corners.map(|corner| optics.see(add(turn(corner), pose.position)));
-        let facet =
-            Facet::new(optics, corners, &triangle.uv).filter(|_| scene.texture(triangle.texture).is_some());
+        let facet = scene.texture(triangle.texture).and_then(|texture| {
+            // What is wider than high comes again sooner going up.
+            let uv = triangle.uv.map(|[u, v]| [u, v * texture.proportion()]);
+            Facet::new(optics, corners, &uv)
+        });
         numbers.push(if facet.is_some() { facets.len() as u32 } else { NO_TRIANGLE });
         facets.extend(facet.map(|facet| Facet {
             texture: triangle.texture.0,

@@ -238,9 +238,31 @@ impl Body {
     /// Pose in `map` at `t`: x y z qx qy qz qw.
     pub fn pose(&self, t: Time) -> [f64; 7] {
         let piece = self.piece(t.0);
-        let (p, [z, w]) = (piece.place(t.0), piece.quaternion(t.0));
-        let Some(flight) = &self.flight else { return [p.at[0], p.at[1], self.span[0], 0.0, 0.0, z, w] };
-        let a = flight.at(t.0);
+        let (p, half) = (piece.place(t.0), piece.quaternion(t.0));
+        self.posed(p.at, half, &self.attitude(t.0))
+    }
+
+    /// Poses half of `span` (s) before and after `t`, as if it moved all the while as it does then.
+    pub fn poses_around(&self, t: Time, span: f64) -> [[f64; 7]; 2] {
+        let ((velocity, turn), a, place) = (self.motion(t.0), self.attitude(t.0), self.place(t.0));
+        let still = velocity == [0.0; 2] && turn == 0.0 && a.rates == [0.0; 2] && a.climb == 0.0;
+        if still {
+            return [self.pose(t); 2];
+        }
+        [-0.5 * span, 0.5 * span].map(|dt| {
+            let at = [place.at[0] + velocity[0] * dt, place.at[1] + velocity[1] * dt];
+            let half = libm::sincos(0.5 * (place.heading + turn * dt)).into();
+            let tilt = [a.roll + a.rates[0] * dt, a.pitch + a.rates[1] * dt];
+            let height = a.height + a.climb * dt;
+            self.posed(at, half, &Attitude { height, roll: tilt[0], pitch: tilt[1], ..a })
+        })
+    }
+
+    /// A pose from its parts; `[z, w]` is the quaternion of the heading.
+    fn posed(&self, at: Vec2, [z, w]: [f64; 2], a: &Attitude) -> [f64; 7] {
+        if self.flight.is_none() {
+            return [at[0], at[1], a.height, 0.0, 0.0, z, w];
+        }
         // First the heading, then pitch, then roll.
         let ((sr, cr), (sp, cp)) = (libm::sincos(0.5 * a.roll), libm::sincos(0.5 * a.pitch));
         let q = [
@@ -249,7 +271,7 @@ impl Body {
             z * cp * cr - w * sp * sr,
             w * cp * cr + z * sp * sr,
         ];
-        [p.at[0], p.at[1], a.height, q[0], q[1], q[2], q[3]]
+        [at[0], at[1], a.height, q[0], q[1], q[2], q[3]]
     }
 
     /// Position in `map` at `t`.

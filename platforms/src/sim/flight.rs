@@ -27,6 +27,8 @@ pub struct Attitude {
     pub pitch: f64,
     /// Rates of roll and pitch.
     pub rates: [f64; 2],
+    /// Rate of the height.
+    pub climb: f64,
 }
 
 /// The legs of one body, the last one in force until another is added.
@@ -43,8 +45,8 @@ impl Leg {
     fn at(&self, t: i64) -> Attitude {
         let dt = seconds(self.start, t.min(self.end)).max(0.0);
         let [height, roll, pitch] = std::array::from_fn(|i| self.from[i] + self.rates[i] * dt);
-        let rates = if t <= self.end { [self.rates[1], self.rates[2]] } else { [0.0; 2] };
-        Attitude { height, roll, pitch, rates }
+        let [climb, rates @ ..] = if t <= self.end { self.rates } else { [0.0; 3] };
+        Attitude { height, roll, pitch, rates, climb }
     }
 }
 

@@ -120,7 +120,7 @@ impl Schedule {
                     robot: *robot,
                     sensor: group.index,
                     captured: t,
-                    view: cameraman.studio().view(*robot, bodies, t),
+                    view: cameraman.studio().view(*robot, group.index, bodies, t),
                 };
                 images.extend(group.robots.iter().map(order).map(|o| cameraman.order(o)));
             }

@@ -107,6 +107,7 @@ pub fn scene(parts: Vec<Part>, world: Vec<Part>, starts: &[[f64; 3]]) -> Scene {
         platforms: vec![platform(parts)],
         robots,
         faults: Vec::new(),
+        images: Vec::new(),
     }
 }
 

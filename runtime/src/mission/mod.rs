@@ -9,6 +9,7 @@ mod scene;
 pub(crate) mod start;
 pub(crate) mod uses;
 
+use crate::scene::ImageFile;
 use crate::{
     Scene,
     objects::{Cameras, Retake, Services},
@@ -59,6 +60,8 @@ pub struct Mission {
     pub(crate) scene: SceneCode,
     services: Option<Arc<dyn Services>>,
     cameras: Option<Arc<dyn Cameras>>,
+    /// Image files of the world.
+    images: Vec<ImageFile>,
 }
 
 impl Mission {
@@ -70,6 +73,11 @@ impl Mission {
     /// The same mission with cameras for replays.
     pub fn with_cameras(self, cameras: Arc<dyn Cameras>) -> Mission {
         Mission { cameras: Some(cameras), ..self }
+    }
+
+    /// The same mission with the image files that its materials name.
+    pub fn with_images(self, images: Vec<ImageFile>) -> Mission {
+        Mission { images, ..self }
     }
 
     /// What takes the images of a recorded run of a scene again.
@@ -111,6 +119,7 @@ impl Mission {
                     scene,
                     services: None,
                     cameras: None,
+                    images: Vec::new(),
                 })
             }
             _ => Err(errors.into_iter().map(diagnostic).collect()),

@@ -108,7 +108,7 @@ pub(super) fn set(mission: &Mission, settings: &Settings) -> Result<Scene, Diagn
         let part = part(&mut start, x, code, number.to_string(), "", 0)?;
         faults.push(Part { name: String::new(), ..part });
     }
-    Ok(Scene { seed: settings.seed, step, world, platforms, robots, faults })
+    Ok(Scene { seed: settings.seed, step, world, platforms, robots, faults, images: mission.images.clone() })
 }
 
 fn part(

@@ -16,6 +16,8 @@ pub(crate) use value_noise::mix;
 #[derive(Clone, Debug)]
 pub struct Texture {
     levels: Vec<Level>,
+    /// Width over height of what it was made from.
+    proportion: f64,
 }
 
 /// Why bytes are not a texture.
@@ -50,7 +52,7 @@ impl Texture {
     pub const MOST_PIXELS: usize = 16_384;
 
     /// From the rows of an image, top row first, three bytes a pixel. Sides that are not powers of two are brought
-    /// up to the next one (at most 4096); the face that it covers is as large as before.
+    /// up to the next one (at most 4096); a repeat of it keeps the proportions of the image.
     ///
     /// # Errors
     /// If the size is out of range or the bytes are not as many as it asks for.
@@ -62,13 +64,13 @@ impl Texture {
         if rgb.len() != expected {
             return Err(TextureError::Length { expected, found: rgb.len() });
         }
-        Ok(Self { levels: pyramid::build(width, height, rgb) })
+        Ok(Self { levels: pyramid::build(width, height, rgb), proportion: width as f64 / height as f64 })
     }
 
     /// One colour all over.
     #[must_use]
     pub fn plain(colour: [u8; 3]) -> Self {
-        Self { levels: pyramid::build(1, 1, &colour) }
+        Self { levels: pyramid::build(1, 1, &colour), proportion: 1.0 }
     }
 
     /// Cloth of a colour: woven threads and folds, contrast enough to be followed.
@@ -87,6 +89,12 @@ impl Texture {
     #[must_use]
     pub fn mean(&self) -> [u8; 3] {
         self.levels.last().map_or([0; 3], Level::first)
+    }
+
+    /// Width over height of a repeat.
+    #[must_use]
+    pub fn proportion(&self) -> f64 {
+        self.proportion
     }
 
     /// Width and height in texels, each a power of two.

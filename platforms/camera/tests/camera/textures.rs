@@ -89,3 +89,20 @@ fn bytes_that_are_no_image_are_refused() {
     );
     assert_eq!(Texture::from_rgb8(5000, 1, &[9; 15_000]).map(|t| t.size()), Ok((4096, 1)));
 }
+
+#[test]
+fn an_image_keeps_its_proportions() {
+    // Black over white, twice as wide as high.
+    let rgb = [[0; 3], [0; 3], [0; 3], [0; 3], [255; 3], [255; 3], [255; 3], [255; 3]].concat();
+    let mut scene = Scene::new();
+    let texture = scene.add_texture(Texture::from_rgb8(4, 2, &rgb).unwrap());
+    scene.fixed.quad(
+        [[2.0, 1.0, -1.0], [2.0, -1.0, -1.0], [2.0, -1.0, 1.0], [2.0, 1.0, 1.0]],
+        Surface { texture, repeat: 2.0 },
+    );
+    let image = frame(&scene, &[], &lens(), Pose::upright([0.0; 3], 0.0), Filter::Mipmap, 1);
+    // From the top of the face down: dark, light, dark, light.
+    let quarters = [-0.75, -0.25, 0.25, 0.75].map(|at| (240.0 + at * lens().fy / 2.0) as usize);
+    let light = quarters.map(|y| image.pixel(320, y).map(|p| p[0] > 128));
+    assert_eq!(light, [false, true, false, true].map(Some));
+}

@@ -1,7 +1,7 @@
 //! Takes images: at once, or on a thread of its own while the run goes on.
 
 use super::{Mounted, Studio};
-use soifra_camera::{Filter, Image, Light, Scratch, View, noise, render};
+use soifra_camera::{Exposure, Filter, Image, Light, Scratch, View, noise, render_blurred};
 use soifra_runtime::{
     Time,
     objects::{Frame, digest},
@@ -35,12 +35,23 @@ impl Studio {
     /// Takes an image; none for a view that is none of this scene.
     pub fn take(&self, order: &Order, desk: &mut Desk) -> Option<Frame> {
         let camera: &Mounted = self.camera(order.robot, order.sensor)?;
-        let (body, parts) = self.placed(order.robot, &order.view)?;
+        let poses = if camera.exposure > 0.0 { order.view.len() / 2 } else { order.view.len() };
+        let (opening, closing) = order.view.split_at(poses);
+        let (body, parts) = self.placed(order.robot, opening)?;
+        let (end, parts_at_end) = match closing {
+            [] => (body, Vec::new()),
+            closing => self.placed(order.robot, closing)?,
+        };
         let light = Light { gain: self.light.gain * camera.gain, ..self.light };
         let pose = body.after(&camera.mount);
         let view = View { lens: &camera.lens, pose, light: &light, filter: Filter::Mipmap };
         let mut image = Image::new(0, 0);
-        render(&self.scene, &parts, &view, 1, &mut image, &mut desk.scratch);
+        let exposure = Exposure {
+            pose: end.after(&camera.mount),
+            parts: &parts_at_end,
+            instants: instants(self.poses(opening), self.poses(closing), camera.lens.fx),
+        };
+        render_blurred(&self.scene, &parts, &view, &exposure, 1, &mut image, &mut desk.scratch);
         noise(&mut image, camera.noise, self.key(order.robot, camera), order.captured.0 as u64);
         let (width, height) = (image.width as u32, image.height as u32);
         Some(Frame {
@@ -53,6 +64,27 @@ impl Studio {
             view: order.view.clone(),
         })
     }
+}
+
+/// Instants of an exposure that are averaged, at most.
+const MOST_INSTANTS: usize = 16;
+
+/// Things are taken to be no nearer, m, when it is told how far they move over the image.
+const NEAREST: f64 = 1.0;
+
+/// How many instants are averaged between the poses at the opening and the closing of a shutter: one for every pixel that
+/// something may move in between, and one to begin with. `focal` is in pixels.
+fn instants(opening: &[f64], closing: &[f64], focal: f64) -> usize {
+    let norm = |a: &[f64], b: &[f64], sign: f64| {
+        a.iter().zip(b).map(|(a, b)| (a - sign * b) * (a - sign * b)).sum::<f64>().sqrt()
+    };
+    let (from, to) = (opening.as_chunks::<7>().0, closing.as_chunks::<7>().0);
+    let moved = from.iter().zip(to).map(|(a, b)| norm(&a[..3], &b[..3], 1.0));
+    // Half of the angle between two quaternions that agree is about their distance.
+    let turned = from.iter().zip(to).next();
+    let turned = turned.map_or(0.0, |(a, b)| norm(&a[3..], &b[3..], 1.0).min(norm(&a[3..], &b[3..], -1.0)));
+    let pixels = focal * (2.0 * turned + moved.fold(0.0, f64::max) / NEAREST);
+    1 + (pixels.ceil() as usize).min(MOST_INSTANTS - 1)
 }
 
 /// What is kept from image to image.

@@ -8,7 +8,7 @@ use soifra_camera::{
 use soifra_runtime::{
     Scene, Time,
     objects::Optics,
-    scene::{Part, PlatformScene},
+    scene::{ImageFile, Part, PlatformScene},
 };
 use std::collections::BTreeMap;
 
@@ -67,6 +67,8 @@ pub struct Mounted {
     /// Standard deviation, of 255.
     pub(super) noise: f64,
     pub(super) gain: f64,
+    /// How long the shutter is open, s.
+    pub(super) exposure: f64,
     name: String,
 }
 
@@ -74,6 +76,7 @@ pub struct Mounted {
 struct Materials<'s> {
     declared: BTreeMap<&'s str, &'s Part>,
     known: BTreeMap<String, Surface>,
+    images: &'s [ImageFile],
 }
 
 impl Materials<'_> {
@@ -93,6 +96,7 @@ impl Materials<'_> {
                             args.positive("repeat")?,
                         )
                     }
+                    "image" => (self.image(args)?, args.positive("width")?),
                     _ => (Texture::cloth(colour(args, "color")?), 1.0),
                 }
             }
@@ -101,6 +105,15 @@ impl Materials<'_> {
         let surface = Surface { texture: scene.add_texture(texture), repeat };
         self.known.insert(name.to_string(), surface);
         Ok(surface)
+    }
+
+    /// What is in the image file of a material.
+    fn image(&self, args: Args<'_>) -> Result<Texture, String> {
+        let name = args.text("file");
+        let file = self.images.iter().find(|f| f.name == name);
+        let pixels = file.and_then(|f| f.pixels.as_deref());
+        let pixels = pixels.ok_or_else(|| args.wrong(format_args!("nobody has read the image `{name}`")))?;
+        Texture::from_rgb8(pixels.width, pixels.height, &pixels.data).map_err(|e| args.wrong(e))
     }
 }
 
@@ -132,7 +145,8 @@ impl Studio {
         }
         let mut pictured = Pictured::new();
         let declared = scene.world.iter().filter(|p| &*p.role == "material").map(|p| (p.name.as_str(), p));
-        let mut materials = Materials { declared: declared.collect(), known: BTreeMap::new() };
+        let mut materials =
+            Materials { declared: declared.collect(), known: BTreeMap::new(), images: &scene.images };
         let mut fixed = Mesh::new();
         for part in &scene.world {
             build(part, scene, &mut pictured, &mut materials, &mut fixed)?;
@@ -178,20 +192,34 @@ impl Studio {
         self.cameras.get(&(*self.platforms.get(robot as usize)?, sensor))
     }
 
-    /// What a robot sees at an instant, as numbers: its pose, those of all other bodies, and how far each figure is in its
-    /// stride.
-    pub fn view(&self, robot: u32, bodies: &[Body], at: Time) -> Vec<f64> {
-        let mut view = Vec::with_capacity(8 * bodies.len());
-        if let Some(own) = bodies.get(robot as usize) {
-            view.extend(own.pose(at));
-        }
-        for body in bodies.iter().enumerate().filter(|(i, _)| *i != robot as usize).map(|(_, b)| b) {
-            view.extend(body.pose(at));
-        }
-        for (body, look) in bodies.iter().zip(&self.looks) {
-            view.extend(look.figure().map(|f| (body.place(at.0).path / f.stride()).rem_euclid(1.0)));
+    /// What a camera of a robot sees at an instant, as numbers: the robot's pose, those of all other bodies, and how far each
+    /// figure is in its stride. Where the shutter is open for a while, all of them as it opens, then all of them as it
+    /// closes.
+    pub fn view(&self, robot: u32, sensor: u32, bodies: &[Body], at: Time) -> Vec<f64> {
+        let exposure = self.camera(robot, sensor).map_or(0.0, |c| c.exposure);
+        let poses = |b: &Body| match exposure > 0.0 {
+            true => b.poses_around(at, exposure),
+            false => [b.pose(at); 2],
+        };
+        let around: Vec<[[f64; 7]; 2]> = bodies.iter().map(poses).collect();
+        let moments = if exposure > 0.0 { 2 } else { 1 };
+        let mut view = Vec::with_capacity(8 * moments * bodies.len());
+        for moment in 0..moments {
+            let others = around.iter().enumerate().filter(|(i, _)| *i != robot as usize).map(|(_, p)| p);
+            view.extend(around.get(robot as usize).into_iter().chain(others).flat_map(|p| p[moment]));
+            for ((body, look), [open, close]) in bodies.iter().zip(&self.looks).zip(&around) {
+                let way = libm::hypot(close[0] - open[0], close[1] - open[1]);
+                let since = if moments == 2 { way * (moment as f64 - 0.5) } else { 0.0 };
+                let phase = |f: &Figure| ((body.place(at.0).path + since) / f.stride()).rem_euclid(1.0);
+                view.extend(look.figure().map(phase));
+            }
         }
         view
+    }
+
+    /// The poses of a view, without how far figures are in their strides.
+    pub(super) fn poses<'v>(&self, view: &'v [f64]) -> &'v [f64] {
+        view.get(..7 * self.looks.len()).unwrap_or_default()
     }
 
     /// The pose of the robot, and the parts that a view places; none when it is no view of this scene.
@@ -225,6 +253,18 @@ fn pose(p: &[f64; 7]) -> Pose {
     Pose { position: [x, y, z], rotation: Rotation::from_quaternion([qw, qx, qy, qz]) }
 }
 
+/// How long the shutter is open, s: no longer than until the next image.
+fn exposure(args: Args<'_>) -> Result<f64, String> {
+    if !args.has("exposure") {
+        return Ok(0.0);
+    }
+    let exposure = args.duration("exposure")?;
+    match args.has("period") && exposure > args.duration("period")? {
+        true => Err(args.wrong("`exposure` is longer than `period`")),
+        false => Ok(exposure.seconds()),
+    }
+}
+
 impl Mounted {
     fn new(platform: &PlatformScene, part: &Part) -> Result<Mounted, String> {
         let of = format!("platform `{}`", platform.name);
@@ -244,6 +284,7 @@ impl Mounted {
             mount: Pose { position: args.vector("at")?, rotation },
             noise: 255.0 * args.at_least_zero("noise")?,
             gain: args.at_least_zero("gain")?,
+            exposure: exposure(args)?,
             name: part.name.clone(),
         })
     }
