@@ -64,7 +64,7 @@ const ENLARGED: f64 = 1.5;
 pub fn shapes(image: &Gray, ground: &Ground, how: &Searching) -> Result<Vec<Shape>, Why> {
     image.lit()?;
     ground.lens.check()?;
-    if !(ground.height > 0.0 && ground.height < 100.0) || !ground.attitude.is_finite() {
+    if !(ground.height > 0.0 && ground.height < 100.0 && ground.attitude.is_finite()) {
         return Err(Why::BadNumber);
     }
     let mut hog = HOGDescriptor::default()?;
