@@ -36,11 +36,27 @@ mission drive {{
 
 /// The report of a run, and what its trace notes.
 fn run(name: &str, wrong: &str, platform: &str, set: &str) -> (Value, String) {
+    run_of(name, mission(wrong), platform, set)
+}
+
+fn run_of(name: &str, mission: String, platform: &str, set: &str) -> (Value, String) {
     let dir = folder(&format!("blind_{name}"));
-    let path = file(&dir, "blind.soi", mission(wrong));
+    let path = file(&dir, "blind.soi", mission);
     let trace = dir.join("blind.mcap").to_string_lossy().into_owned();
-    let o =
-        soifra(&["run", &path, "--platform", platform, "--set", set, "--trace", &trace, "--format", "json"]);
+    let o = soifra(&[
+        "run",
+        &path,
+        "--mission",
+        "drive",
+        "--platform",
+        platform,
+        "--set",
+        set,
+        "--trace",
+        &trace,
+        "--format",
+        "json",
+    ]);
     assert_eq!(code(&o), 0, "{name}: {}{}", stdout(&o), stderr(&o));
     let log = stdout(&soifra(&["log", &trace]));
     let notes = log.lines().filter(|l| l.contains(" note ")).collect::<Vec<_>>().join("\n");
@@ -49,6 +65,49 @@ fn run(name: &str, wrong: &str, platform: &str, set: &str) -> (Value, String) {
 
 fn metric(report: &Value, name: &str) -> f64 {
     report["metrics"][name].as_f64().unwrap_or_else(|| panic!("{name}: {report}"))
+}
+
+/// A robot that looks for people, for 5 s.
+fn looking_for_people() -> String {
+    format!(
+        "
+edition 1
+import \"{}/missions/soifra/search.soi\"
+
+param gain: Number = 1
+
+mission drive {{
+  world gallery
+  light = lamp(gain: gain)
+  robot scout: any of [turtlebot2, husky] at pose((5 m, 6 m), 0 deg) runs watcher, follower
+  goal find_people {{ subgoal look by watcher achieved when found.length() >= 1 }}
+  goal follow_person {{ subgoal follow by follower achieved when done }}
+  done when now >= 5 s
+  within 10 s
+  expect never collision
+  metric turned = abs(scout.watcher.turned)
+  metric looks = scout.watcher.looks
+}}
+",
+        root().display()
+    )
+}
+
+#[test]
+fn without_light_nobody_is_looked_for() {
+    for (name, gain, reason) in
+        [("nobody_black", "gain=0", "image all black"), ("nobody_white", "gain=1000", "image all white")]
+    {
+        let (report, notes) = run_of(name, looking_for_people(), "turtlebot2", gain);
+        // In bright light an image may show something dark now and then.
+        assert!(metric(&report, "looks") < 3.0, "{name}: {report}");
+        // It begins to look around, and stands when it is known that nothing is seen.
+        assert!(metric(&report, "turned") < 0.5, "{name}: {report}");
+        assert!(notes.contains(&format!("blind: {reason}")), "{name}: {notes}");
+        assert!(notes.contains("nothing seen for"), "{name}: {notes}");
+    }
+    let (report, notes) = run_of("nobody_day", looking_for_people(), "husky", "gain=1");
+    assert!(metric(&report, "looks") > 40.0 && metric(&report, "turned") > 1.0, "{report} {notes}");
 }
 
 #[test]
