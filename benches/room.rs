@@ -77,7 +77,7 @@ fn bare_calls(frames: &[Arc<Frame>], how: &Looking) -> Vec<Bare> {
             let lens =
                 Lens { fx, fy, cx: f.optics.centre[0] - 0.5, cy: f.optics.centre[1] - 0.5, distortion: None };
             let moment = Moment::straight(f.captured.seconds());
-            if let Ok((_, next)) = look_at(gray, &memory, &moment, &lens, how) {
+            if let Ok((_, next)) = look_at(gray, &memory, &moment, &lens, how, None) {
                 memory = next;
             }
             let point = |p: [f64; 2]| Point2f::new(p[0] as f32, p[1] as f32);

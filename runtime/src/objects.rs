@@ -117,6 +117,8 @@ pub trait Shelf {
     fn mapped(&self) -> Vec<&Part>;
     /// The same of all walls and obstacles that there are: for judgements, nothing for agents.
     fn standing(&self) -> Option<Vec<&Part>>;
+    /// How many threads a service may make use of, the calling one included. What it computes does not depend on them.
+    fn threads(&self) -> usize;
 }
 
 /// Bounds, walls and obstacles of a scene; all, or those on the map.

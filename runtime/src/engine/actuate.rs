@@ -480,6 +480,7 @@ impl Engine<'_> {
             now: self.now,
             seed: self.seed,
             trace: false,
+            threads: 1,
         };
         let mut desk = std::mem::take(&mut self.desk);
         let Desk { frame, log, near, heard, .. } = &mut desk;

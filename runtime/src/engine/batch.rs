@@ -34,6 +34,11 @@ impl Workers {
         Workers { desks: (0..count).map(|_| desk()).collect(), pool, order: Vec::new() }
     }
 
+    /// How many threads there are, the calling one included.
+    pub fn threads(&self) -> usize {
+        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
     /// Evaluates `releases`; `outcomes` gets one entry for each.
     pub fn evaluate(
         &mut self,

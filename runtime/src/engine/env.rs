@@ -38,6 +38,8 @@ pub(crate) struct Instant<'a> {
     pub seed: u64,
     /// Whether a trace is kept.
     pub trace: bool,
+    /// Threads that a service may make use of, the calling one included.
+    pub threads: usize,
 }
 
 impl Instant<'_> {
@@ -138,6 +140,7 @@ impl Env for AgentEnv<'_, '_> {
             instance: self.instance,
             scene: self.instant.scene,
             truth: false,
+            threads: self.instant.threads,
         };
         services.call(which, args, &mut shelf, out)
     }

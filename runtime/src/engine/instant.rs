@@ -352,6 +352,7 @@ impl Engine<'_> {
                 now: self.now,
                 seed: self.seed,
                 trace: self.recorder.on(),
+                threads: workers.threads(),
             };
             workers.evaluate(&instant, &mut self.minds, &releases, &mut outcomes);
             for desk in &mut workers.desks {

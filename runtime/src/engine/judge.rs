@@ -118,8 +118,8 @@ impl Env for Court<'_> {
         // Like an agent behind the last one: what it makes has numbers of its own.
         let instance = self.cast.instances.len() as u32;
         let truth = self.truth.is_some();
-        let mut shelf =
-            AgentShelf { store: self.store, made: &mut self.made, instance, scene: self.scene, truth };
+        let (store, scene, made) = (self.store, self.scene, &mut self.made);
+        let mut shelf = AgentShelf { store, made, instance, scene, truth, threads: 1 };
         services.call(which, args, &mut shelf, out)
     }
 

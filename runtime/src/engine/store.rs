@@ -84,6 +84,8 @@ pub(crate) struct AgentShelf<'a> {
     pub scene: &'a Scene,
     /// Whether it is for a judgement.
     pub truth: bool,
+    /// Threads that a service may make use of.
+    pub threads: usize,
 }
 
 impl Shelf for AgentShelf<'_> {
@@ -106,5 +108,9 @@ impl Shelf for AgentShelf<'_> {
 
     fn standing(&self) -> Option<Vec<&Part>> {
         self.truth.then(|| objects::standing(self.scene, true))
+    }
+
+    fn threads(&self) -> usize {
+        self.threads
     }
 }

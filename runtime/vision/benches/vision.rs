@@ -93,7 +93,7 @@ fn main() {
     // What is remembered before each frame, and the points that the flow is asked for.
     let mut memories = vec![Memory::default()];
     for k in 0..FRAMES {
-        let next = look_at(grays[k].clone(), &memories[k], &moment(k), &lens, &how).expect("a look").1;
+        let next = look_at(grays[k].clone(), &memories[k], &moment(k), &lens, &how, None).expect("a look").1;
         memories.push(next);
     }
     let starts: Vec<Vector<Point2f>> = memories

@@ -3,6 +3,7 @@
 
 use opencv::core::{self, Mat, Vec4i, Vector};
 use opencv::{imgproc, prelude::*};
+use std::cell::RefCell;
 
 use crate::image::Gray;
 use crate::segment::{Merging, Segment, merge};
@@ -82,20 +83,27 @@ const SCATTER: f64 = 0.35;
 /// across an edge that may be upright: what lies flat or leans never becomes a contour, nor a vote, which in a room of
 /// bricks, tiles and speckle are most of them.
 fn segments(image: &Gray, (low, high): (f64, f64), roll: f64, how: &Contours) -> Result<Vector<Vec4i>, Why> {
-    let mut contours = Mat::default();
-    let (across, along) = derivatives(image, roll, how)?;
-    imgproc::canny_derivative(&across, &along, &mut contours, low, high, false)?;
-    let mut lines = Vector::<Vec4i>::new();
-    imgproc::hough_lines_p(
-        &contours,
-        &mut lines,
-        1.0,
-        std::f64::consts::PI / 180.0,
-        how.votes.max(1),
-        how.shortest.max(1.0),
-        how.gap.max(0.0),
-    )?;
-    Ok(lines)
+    SPACE.with_borrow_mut(|(across, along, contours)| {
+        derive(image, roll, how, (across, along))?;
+        imgproc::canny_derivative(across, along, contours, low, high, false)?;
+        let mut lines = Vector::<Vec4i>::new();
+        imgproc::hough_lines_p(
+            contours,
+            &mut lines,
+            1.0,
+            std::f64::consts::PI / 180.0,
+            how.votes.max(1),
+            how.shortest.max(1.0),
+            how.gap.max(0.0),
+        )?;
+        Ok(lines)
+    })
+}
+
+thread_local! {
+    /// Space for derivatives and contours, kept from image to image: to ask the system for two megabytes each time costs
+    /// more than to fill them.
+    static SPACE: RefCell<(Mat, Mat, Mat)> = RefCell::default();
 }
 
 /// The derivatives across and along the image (3 x 3 Sobel, 16 bits) that Canny is given: those across where an edge may
@@ -105,12 +113,17 @@ fn segments(image: &Gray, (low, high): (f64, f64), roll: f64, how: &Contours) ->
 /// Those of OpenCV.
 pub fn derivatives(image: &Gray, roll: f64, how: &Contours) -> Result<(Mat, Mat), Why> {
     let (mut across, mut along) = (Mat::default(), Mat::default());
+    derive(image, roll, how, (&mut across, &mut along))?;
+    Ok((across, along))
+}
+
+fn derive(image: &Gray, roll: f64, how: &Contours, (across, along): (&mut Mat, &mut Mat)) -> Result<(), Why> {
     let border = core::BORDER_REPLICATE;
     let grey = image.mat()?;
-    imgproc::sobel(&grey, &mut across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border)?;
-    imgproc::sobel(&grey, &mut along, core::CV_16S, 0, 1, 3, 1.0, 0.0, border)?;
+    imgproc::sobel(&grey, across, core::CV_16S, 1, 0, 3, 1.0, 0.0, border)?;
+    imgproc::sobel(&grey, along, core::CV_16S, 0, 1, 3, 1.0, 0.0, border)?;
     upright(across.data_typed_mut()?, along.data_typed_mut()?, how.tolerance + roll.abs() + SCATTER);
-    Ok((across, along))
+    Ok(())
 }
 
 /// Leaves of the derivatives across the image those whose gradient is at most `lean` radians off level; those along the

@@ -127,17 +127,16 @@ impl Default for Following {
     }
 }
 
-/// Carries the edges into the frame `image`: known ones where they are expected, then those of `segments` that are
-/// new. Ordered by x; the longest stay when there are more than `most`.
-pub fn follow(
+/// Carries known edges into the frame `image`, where they are expected: the best known first, and the number of the next
+/// one that is new.
+pub fn carry(
     tracks: Vec<EdgeTrack>,
     image: &Gray,
-    segments: &[Segment],
     moment: &Moment,
     lens: &Lens,
     how: &Following,
-) -> Vec<EdgeTrack> {
-    let mut next = tracks.iter().map(|t| t.id).max().map_or(0, |id| id.wrapping_add(1));
+) -> (Vec<EdgeTrack>, u32) {
+    let next = tracks.iter().map(|t| t.id).max().map_or(0, |id| id.wrapping_add(1));
     let mut kept: Vec<EdgeTrack> = Vec::with_capacity(tracks.len());
     for mut track in tracks {
         track.sights.retain(|s| s.time < moment.time && moment.time - s.time <= how.memory);
@@ -167,6 +166,19 @@ pub fn follow(
             tracks.push(track);
         }
     }
+    (tracks, next)
+}
+
+/// Adds the edges of `segments` that are new to those that have been carried into the frame `image`. Ordered by x; the
+/// longest stay when there are more than `most`.
+pub fn take_up(
+    (mut tracks, mut next): (Vec<EdgeTrack>, u32),
+    image: &Gray,
+    segments: &[Segment],
+    moment: &Moment,
+    lens: &Lens,
+    how: &Following,
+) -> Vec<EdgeTrack> {
     let mut fresh: Vec<&Segment> = segments.iter().collect();
     fresh.sort_by(|a, b| b.length().total_cmp(&a.length()));
     for segment in fresh {

@@ -3,7 +3,7 @@
 use crate::contours::{Contours, verticals};
 use crate::course::Lane;
 use crate::edge::{Edge, nearest_pair};
-use crate::follow::{EdgeTrack, Following, Moment, follow};
+use crate::follow::{EdgeTrack, Following, Moment, carry, take_up};
 use crate::image::{Gray, ImageView};
 use crate::known::{Known, Remembering, remember};
 use crate::landmarks::{Landmark, landmarks, remember_landmarks};
@@ -77,10 +77,11 @@ pub fn look(
     lens: &Lens,
     how: &Looking,
 ) -> Result<(Seen, Memory), Why> {
-    look_at(Gray::of(frame)?, memory, moment, lens, how)
+    look_at(Gray::of(frame)?, memory, moment, lens, how, None)
 }
 
-/// As [`look`], for a frame that is grey already.
+/// As [`look`], for a frame that is grey already; with another thread at hand, what is known is followed on it while contours
+/// are looked for. What is seen is the same.
 ///
 /// # Errors
 /// As [`look`].
@@ -90,6 +91,7 @@ pub fn look_at(
     moment: &Moment,
     lens: &Lens,
     how: &Looking,
+    helper: Option<&rayon::ThreadPool>,
 ) -> Result<(Seen, Memory), Why> {
     lens.check()?;
     if lens.distortion.is_some() {
@@ -105,22 +107,30 @@ pub fn look_at(
         return Err(Why::WrongSize);
     }
     image.lit()?;
-    let segments = match verticals(&image, moment.attitude.roll, &how.contours) {
+    let known = || {
+        let edges = carry(memory.edges.clone(), &image, moment, lens, &how.edges);
+        let points = match &memory.image {
+            Some(previous) => {
+                points::advance(memory.points.clone(), previous, &image, moment, lens, &how.points)?
+            }
+            None => Vec::new(),
+        };
+        Ok((edges, points))
+    };
+    let new = || verticals(&image, moment.attitude.roll, &how.contours);
+    let nothing = memory.points.is_empty() && memory.edges.is_empty();
+    let (segments, known) = both(helper.filter(|_| !nothing), new, known);
+    let segments = match segments {
         Ok(segments) => segments,
         Err(Why::NoFeatures) => Vec::new(),
         Err(why) => return Err(why),
     };
-    let edges = follow(memory.edges.clone(), &image, &segments, moment, lens, &how.edges);
+    let (carried, mut followed) = known.unwrap_or(Err(Why::OpenCv))?;
+    let edges = take_up(carried, &image, &segments, moment, lens, &how.edges);
     let mut found = obstacles(&edges, moment, lens, &how.pairing);
     if let Ok(list) = &mut found {
         list.sort_by_key(|o| !how.lane.holds(o, moment.pace));
     }
-    let mut followed = match &memory.image {
-        Some(previous) => {
-            points::advance(memory.points.clone(), previous, &image, moment, lens, &how.points)?
-        }
-        None => Vec::new(),
-    };
     let obstacles = found.as_deref().unwrap_or_default();
     let interval = memory.time.map_or(0.0, |last| moment.time - last);
     let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
@@ -146,6 +156,27 @@ pub fn look_at(
     let memory =
         Memory { time: Some(moment.time), image: Some(image), edges, points: followed, known, landmarks };
     Ok((seen, memory))
+}
+
+/// Both, the second by a helper if there is one.
+fn both<A, B: Send>(
+    helper: Option<&rayon::ThreadPool>,
+    mine: impl FnOnce() -> A,
+    other: impl FnOnce() -> B + Send,
+) -> (A, Option<B>) {
+    let mut done = None;
+    let mine = match helper {
+        Some(pool) => pool.in_place_scope(|scope| {
+            scope.spawn(|_| done = Some(other()));
+            mine()
+        }),
+        None => {
+            let mine = mine();
+            done = Some(other());
+            mine
+        }
+    };
+    (mine, done)
 }
 
 /// Which of the obstacles that are seen is the first, and the time to contact with it.

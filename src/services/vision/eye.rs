@@ -1,6 +1,7 @@
 //! Looking at an image: from the registers of a call to what is seen.
 
 use super::sight::Sight;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use soifra_graph::eval::FaultKind;
 use soifra_runtime::objects::{Frame, Optics, Shelf};
 use soifra_vision::{
@@ -14,10 +15,14 @@ use soifra_vision::{
     reckoning::{Motion, Stop, motion},
     rectify::Rectification,
 };
-use std::sync::{Arc, Once};
+use std::sync::{Arc, LazyLock, Once};
 
 /// That OpenCV leaves the threads to us.
 static SINGLE: Once = Once::new();
+
+/// A thread that takes part of a look; none where the system gives none.
+static HELPER: LazyLock<Option<ThreadPool>> =
+    LazyLock::new(|| ThreadPoolBuilder::new().num_threads(1).thread_name(|_| "look".into()).build().ok());
 
 /// Leaves the threads to us; what is computed does not depend on it.
 pub(super) fn alone() {
@@ -83,6 +88,7 @@ struct Asked {
     body: Body,
     thresholds: Thresholds,
     window: f64,
+    helper: Option<&'static ThreadPool>,
 }
 
 /// Looks at an image. The registers: image, sight before?, reading of an inertial unit?, of odometry?, half width and
@@ -109,7 +115,9 @@ pub fn look(args: &[f64], shelf: &dyn Shelf) -> Result<Result<Sight, Why>, Fault
     let frame = object.as_any().downcast_ref::<Frame>().ok_or(FaultKind::Malformed)?;
     let before = before.map(|b| shelf.get(b).ok_or(FaultKind::Unavailable("this sight"))).transpose()?;
     let before = before.as_ref().and_then(|b| b.as_any().downcast_ref::<Sight>());
-    Ok(see(frame, before, &Asked { imu, odometry, body: Body { half_width, margin }, thresholds, window }))
+    let helper = if shelf.threads() > 1 { HELPER.as_ref() } else { None };
+    let body = Body { half_width, margin };
+    Ok(see(frame, before, &Asked { imu, odometry, body, thresholds, window, helper }))
 }
 
 /// Registers that are taken from the front.
@@ -171,7 +179,7 @@ fn see(frame: &Frame, before: Option<&Sight>, asked: &Asked) -> Result<Sight, Wh
     let empty = Memory::default();
     let memory = before.map_or(&empty, |b| &b.memory);
     let interval = memory.time.map(|t| time - t);
-    let (seen, memory) = look_at(gray, memory, &moment, &lens, &how)?;
+    let (seen, memory) = look_at(gray, memory, &moment, &lens, &how, asked.helper)?;
     let speed = asked.odometry.map(|_| moving.speed);
     let (body, optics) = (asked.body, frame.optics);
     let previous = before.and_then(|b| b.memory.image.clone());

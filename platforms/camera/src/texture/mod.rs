@@ -6,6 +6,7 @@ mod pyramid;
 mod value_noise;
 
 use core::fmt;
+use std::sync::Arc;
 
 pub use names::NAMES;
 pub(crate) use pyramid::Level;
@@ -15,7 +16,7 @@ pub(crate) use value_noise::mix;
 /// shows its mean colour and not a moiré.
 #[derive(Clone, Debug)]
 pub struct Texture {
-    levels: Vec<Level>,
+    levels: Arc<[Level]>,
     /// Width over height of what it was made from.
     proportion: f64,
 }
@@ -64,13 +65,16 @@ impl Texture {
         if rgb.len() != expected {
             return Err(TextureError::Length { expected, found: rgb.len() });
         }
-        Ok(Self { levels: pyramid::build(width, height, rgb), proportion: width as f64 / height as f64 })
+        Ok(Self {
+            levels: pyramid::build(width, height, rgb).into(),
+            proportion: width as f64 / height as f64,
+        })
     }
 
     /// One colour all over.
     #[must_use]
     pub fn plain(colour: [u8; 3]) -> Self {
-        Self { levels: pyramid::build(1, 1, &colour), proportion: 1.0 }
+        Self { levels: pyramid::build(1, 1, &colour).into(), proportion: 1.0 }
     }
 
     /// Cloth of a colour: woven threads and folds, contrast enough to be followed.

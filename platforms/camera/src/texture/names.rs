@@ -1,6 +1,7 @@
 //! Textures that a world can name.
 
 use super::{Texture, pattern};
+use std::sync::OnceLock;
 
 /// How a named texture is made.
 #[derive(Clone, Copy)]
@@ -44,10 +45,14 @@ pub const NAMES: [&str; ALL.len()] = {
     names
 };
 
+/// Those that have been made: a texture is the same every time, and runs follow on each other.
+static MADE: [OnceLock<Texture>; ALL.len()] = [const { OnceLock::new() }; ALL.len()];
+
 pub(super) fn by_name(name: &str) -> Option<Texture> {
-    let (_, make) = ALL.iter().find(|(known, _)| *known == name)?;
-    Some(match make {
+    let at = ALL.iter().position(|(known, _)| *known == name)?;
+    let make = || match ALL[at].1 {
         Procedure(make) => make(),
-        Plain(colour) => Texture::plain(*colour),
-    })
+        Plain(colour) => Texture::plain(colour),
+    };
+    Some(MADE[at].get_or_init(make).clone())
 }

@@ -22,7 +22,7 @@ fn paint(side: usize, colour: impl Fn(usize, usize) -> Colour) -> Texture {
             rgb.extend(colour(x, y).map(|c| (c + 0.5).clamp(0.0, 255.0) as u8));
         }
     }
-    Texture { levels: pyramid::build(side, side, &rgb), proportion: 1.0 }
+    Texture { levels: pyramid::build(side, side, &rgb).into(), proportion: 1.0 }
 }
 
 fn mixed(a: Colour, b: Colour, share: f32) -> Colour {
