@@ -4,6 +4,7 @@
 
 use crate::course::{Lane, Reach};
 use crate::follow::Moment;
+use crate::landmarks::Landmark;
 use crate::lens::Lens;
 use crate::obstacle::Obstacle;
 use crate::reckoning::relative;
@@ -19,8 +20,10 @@ pub struct Known {
     /// Unit vector away from where it was seen: it is taken to be as deep that way as it is wide, and
     /// at least a metre.
     pub away: [f64; 2],
-    /// Numbers of the tracks of its edges as last seen, left and right.
+    /// Numbers of the tracks of the edges that it was last seen to reach to, left and right.
     pub ids: [u32; 2],
+    /// When they were seen, s.
+    pub reached: [f64; 2],
     /// Which of the obstacles that are seen now it is.
     pub which: Option<usize>,
     /// How far ahead it is, as known best.
@@ -68,6 +71,18 @@ const DEPTH: f64 = 1.0;
 /// How well the direction of motion is known, radians.
 const DRIFT: f64 = 0.01;
 
+/// Two bearings so near may be of one edge, radians.
+const RIM: f64 = 0.03;
+
+/// A distance is well known to this share of it.
+const CERTAIN: f64 = 0.05;
+
+/// An edge so near to the course shows no distance by itself: tangent.
+const OFF_AXIS: f64 = 0.05;
+
+/// What is so many times as far away stands behind.
+const BEHIND: f64 = 1.4;
+
 /// Parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remembering {
@@ -97,6 +112,8 @@ pub struct Remembering {
     pub company: f64,
     /// Most edges by themselves remembered.
     pub most_landmarks: usize,
+    /// For how long an obstacle is taken to reach as far as it was seen to, when what is seen of it now is less, s.
+    pub extent: f64,
     /// For how long the time to contact with what is not seen is told, s.
     pub recent: f64,
     /// Most obstacles remembered.
@@ -119,6 +136,7 @@ impl Default for Remembering {
             hidden: 1.0,
             company: 0.4,
             most_landmarks: 128,
+            extent: 2.5,
             recent: 0.3,
             most: 16,
         }
@@ -129,7 +147,7 @@ impl Default for Remembering {
 /// now, and what was known and is not in view. A robot that hardly moves measures nothing, and so misses nothing.
 pub fn remember(
     before: &[Known],
-    seen: &[Obstacle],
+    (seen, placed_now): (&[Obstacle], &[Landmark]),
     now: &Moment,
     (interval, moves): (f64, bool),
     (lens, width): (&Lens, usize),
@@ -142,16 +160,21 @@ pub fn remember(
         .filter_map(|(i, o)| Some(Known { which: Some(i), ..placed(o, now)? }))
         .filter(|k| ahead(k, now)[1] < how.farthest && k.width() < how.widest)
         .collect();
+    let others: Vec<Known> =
+        out.iter().copied().chain(before.iter().filter(|k| k.is_sure(how)).copied()).collect();
+    let through = Through::new(seen, placed_now, now);
     for old in before {
         let same = out.iter_mut().filter(|k| k.which.is_some() && gap(k, old) < how.same);
-        let joined = same.filter_map(|k| k.joined(old, now, how).map(|j| (k, j))).next();
+        let joined = same.filter_map(|k| k.joined(old, (&others, &through), now, how).map(|j| (k, j))).next();
         if let Some((known, joined)) = joined {
             *known = joined;
             continue;
         }
         let mut old = Known { which: None, ..*old };
         // What is near may hide its edges; forgetting it would be worse than believing in what is not there.
-        if moves && ahead(&old, now)[0] > how.near && in_view(&old, now, lens, width) {
+        let [right, left] = [old.right, old.left].map(|p| polar(p, now));
+        let contradicted = in_view(&old, now, lens, width) || through.between(right, left);
+        if moves && ahead(&old, now)[0] > how.near && contradicted {
             old.missed += interval;
         }
         if old.is_sure(how) && old.missed < how.doubt && ahead(&old, now)[1] > -how.behind {
@@ -181,6 +204,7 @@ fn placed(obstacle: &Obstacle, now: &Moment) -> Option<Known> {
         right,
         away: [c, s],
         ids,
+        reached: [now.time; 2],
         which: None,
         range,
         sightings: 1,
@@ -194,6 +218,35 @@ fn placed(obstacle: &Obstacle, now: &Moment) -> Option<Known> {
 fn ahead(known: &Known, now: &Moment) -> [f64; 2] {
     let [l, r] = [known.left, known.right].map(|p| relative(p, now.place, now.course)[0]);
     [l.min(r), l.max(r)]
+}
+
+/// How far away a place is, and its bearing off the course, radians.
+fn polar(place: [f64; 2], now: &Moment) -> [f64; 2] {
+    let [x, y] = relative(place, now.place, now.course);
+    [libm::hypot(x, y), libm::atan2(y, x)]
+}
+
+/// What is seen far away, in directions in which nothing can stand before it: distance and bearing.
+struct Through(Vec<[f64; 2]>);
+
+impl Through {
+    /// Edges placed by themselves, and those of obstacles whose distance is well known.
+    fn new(seen: &[Obstacle], placed: &[Landmark], now: &Moment) -> Through {
+        let mut all: Vec<[f64; 2]> = placed.iter().map(|l| polar(l.place, now)).collect();
+        for o in seen.iter().filter(|o| o.contact.sigma <= CERTAIN * o.contact.ttc) {
+            let ahead = o.contact.ttc * now.pace;
+            let tangents = [&o.left_tangents, &o.right_tangents].map(|t| t.last().map_or(0.0, |t| t.tangent));
+            let off = tangents.into_iter().filter(|t| t.abs() > OFF_AXIS);
+            all.extend(off.map(|t| [ahead * libm::sqrt(1.0 + t * t), libm::atan(t)]));
+        }
+        Through(all)
+    }
+
+    /// Whether something between two places, the right one first, is seen far behind them.
+    fn between(&self, [a, right]: [f64; 2], [b, left]: [f64; 2]) -> bool {
+        let behind = BEHIND * a.max(b);
+        self.0.iter().any(|[away, bearing]| *away > behind && right + RIM < *bearing && *bearing < left - RIM)
+    }
 }
 
 /// The distance between two segments, roughly: of their nearest ends or middles; zero when they overlap.
@@ -218,24 +271,46 @@ pub(crate) fn shows(place: [f64; 2], now: &Moment, lens: &Lens, width: usize) ->
 
 impl Known {
     /// The same obstacle as known before: an image may show part of it, so it reaches as far to each side as it was
-    /// ever seen to. Nothing when together they would be much wider than either: they are two.
-    fn joined(&self, before: &Known, now: &Moment, how: &Remembering) -> Option<Known> {
-        let bearing = |p: [f64; 2]| {
-            let [x, y] = relative(p, now.place, now.course);
-            libm::atan2(y, x)
-        };
+    /// seen to of late, unless one of the `others` is there. Nothing when together they would be much wider than either: they are two.
+    fn joined(
+        &self,
+        before: &Known,
+        (others, through): (&[Known], &Through),
+        now: &Moment,
+        how: &Remembering,
+    ) -> Option<Known> {
+        let bearing = |p| polar(p, now)[1];
+        let another = |p| others.iter().any(|o| o.hides(p, now) && gap(o, self) >= how.same);
         // The same edge is now known better.
-        let farther = |k: usize, by: f64| before.ids[k] != self.ids[k] && by > 0.0;
-        let left =
-            if farther(0, bearing(before.left) - bearing(self.left)) { before.left } else { self.left };
-        let right =
-            if farther(1, bearing(self.right) - bearing(before.right)) { before.right } else { self.right };
+        let farther = |k: usize, by: f64| {
+            let (mine, old) = (polar(self.side(k).0, now), polar(before.side(k).0, now));
+            let open = if k == 0 { through.between(mine, old) } else { through.between(old, mine) };
+            let late = now.time - before.reached[k] > how.extent;
+            before.ids[k] != self.ids[k] && by > 0.0 && !late && !open && !another(before.side(k).0)
+        };
+        let left = farther(0, bearing(before.left) - bearing(self.left));
+        let right = farther(1, bearing(self.right) - bearing(before.right));
+        let [(left, id_left, reached_left), (right, id_right, reached_right)] =
+            [(0, left), (1, right)].map(|(k, farther)| if farther { before } else { self }.side(k));
         let sightings = self.sightings.saturating_add(before.sightings);
         // What was known better before still is, less the way since: a pair that is new or narrow tells little.
         let better = before.range.at(now).is_some_and(|[_, sigma]| sigma < self.range.sigma);
         let range = if better { before.range } else { self.range };
-        let joined = Known { left, right, away: before.away, range, sightings, ..*self };
+        let (ids, reached) = ([id_left, id_right], [reached_left, reached_right]);
+        let joined = Known { left, right, ids, reached, away: before.away, range, sightings, ..*self };
         (joined.width() <= self.width().max(before.width()) + how.same).then_some(joined)
+    }
+
+    /// Whether it stands where a place is seen, or before it.
+    fn hides(&self, place: [f64; 2], now: &Moment) -> bool {
+        let [[_, left], [near, right], [away, bearing]] =
+            [self.left, self.right, place].map(|p| polar(p, now));
+        right - RIM <= bearing && bearing <= left + RIM && near <= away + DEPTH
+    }
+
+    /// Its left edge (0) or its right one (1): place, number, and when it was seen.
+    fn side(&self, k: usize) -> ([f64; 2], u32, f64) {
+        ([self.left, self.right][k], self.ids[k], self.reached[k])
     }
 
     fn width(&self) -> f64 {

@@ -133,12 +133,15 @@ pub fn look_at(
     }
     let obstacles = found.as_deref().unwrap_or_default();
     let interval = memory.time.map_or(0.0, |last| moment.time - last);
+    let placed = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, _)| {
+        landmarks(&edges, moment, lens, remembering.doubtful, &how.pairing)
+    });
     let known = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
         let doubting = (interval, *speed > 0.5 * moment.pace);
-        remember(&memory.known, obstacles, moment, doubting, (lens, image.width()), remembering)
+        let camera = (lens, image.width());
+        remember(&memory.known, (obstacles, &placed), moment, doubting, camera, remembering)
     });
     let landmarks = how.remembering.as_ref().map_or_else(Vec::new, |(remembering, speed)| {
-        let placed = landmarks(&edges, moment, lens, remembering.doubtful, &how.pairing);
         let doubting = (interval, *speed > 0.5 * moment.pace);
         remember_landmarks(&memory.landmarks, placed, moment, doubting, (lens, image.width()), remembering)
     });
@@ -194,10 +197,23 @@ fn first(
             (known.which.ok_or(Why::NoObstacle), known.contact(moment, recent).ok_or(Why::NoObstacle))
         }
         None => match seen {
-            Ok(all) => (Ok(0), all.first().map(|o| o.contact.ttc).ok_or(Why::NoObstacle)),
+            Ok(all) => {
+                let first = all.iter().position(|o| !behind_known(o, known, moment, how));
+                let contact = first.and_then(|i| all.get(i)).map(|o| o.contact.ttc);
+                (first.ok_or(Why::NoObstacle), contact.ok_or(Why::NoObstacle))
+            }
             Err(why) => (Err(*why), Err(*why)),
         },
     }
+}
+
+/// Whether it borders on something known that is nearer: then it is what is seen beside that.
+fn behind_known(obstacle: &Obstacle, known: &[Known], moment: &Moment, how: &Looking) -> bool {
+    let beside = |k: &&Known| k.ids[0] == obstacle.right_id || k.ids[1] == obstacle.left_id;
+    let sure = |k: &&Known| how.remembering.as_ref().is_some_and(|(r, _)| k.is_sure(r));
+    let mut nearer =
+        known.iter().filter(beside).filter(sure).filter_map(|k| k.contact(moment, f64::INFINITY));
+    nearer.any(|contact| contact < obstacle.contact.ttc)
 }
 
 /// The published detection, from two frames alone.

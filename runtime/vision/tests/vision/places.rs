@@ -132,7 +132,7 @@ fn the_range_that_was_known_best_counts() {
     let now = moment(0.0);
     let edges = [[3.0, 0.4], [3.0, -0.5]];
     let good = obstacle(&now, edges, 0.01);
-    let known = remember(&[], std::slice::from_ref(&good), &now, (0.05, true), (&lens(), WIDTH), &how);
+    let known = remember(&[], (std::slice::from_ref(&good), &[]), &now, (0.05, true), (&lens(), WIDTH), &how);
     let told = known[0].contact(&now, how.recent).unwrap();
     assert!((told - 6.0).abs() < 0.01, "3 m at 0.5 m/s: {told}");
     // A worse one a little later, off by a second, says nothing against it.
@@ -140,11 +140,12 @@ fn the_range_that_was_known_best_counts() {
     let mut worse = good.clone();
     worse.contact.ttc = 5.0;
     worse.contact.sigma = 0.3;
-    let next = remember(&known, std::slice::from_ref(&worse), &later, (0.2, true), (&lens(), WIDTH), &how);
+    let next =
+        remember(&known, (std::slice::from_ref(&worse), &[]), &later, (0.2, true), (&lens(), WIDTH), &how);
     assert!((next[0].contact(&later, how.recent).unwrap() - 5.8).abs() < 0.01);
     // A better one does.
     let better = Obstacle { contact: Expansion { sigma: 0.001, ..worse.contact }, ..worse.clone() };
-    let next = remember(&known, &[better], &later, (0.2, true), (&lens(), WIDTH), &how);
+    let next = remember(&known, (&[better], &[]), &later, (0.2, true), (&lens(), WIDTH), &how);
     assert!((next[0].contact(&later, how.recent).unwrap() - 5.0).abs() < 1e-9);
     // Not seen any more, it is told for a while; after a turn, not at all.
     assert!(known[0].contact(&moment(how.recent - 0.01), how.recent).is_some());
@@ -159,13 +160,15 @@ fn a_known_obstacle_in_full_view_that_is_not_seen_is_forgotten() {
     let seen = obstacle(&now, [[3.0, 0.4], [3.0, -0.5]], 0.01);
     let mut known = Vec::new();
     for _ in 0..how.fewest {
-        known = remember(&known, std::slice::from_ref(&seen), &now, (0.05, true), (&lens(), WIDTH), &how);
+        known =
+            remember(&known, (std::slice::from_ref(&seen), &[]), &now, (0.05, true), (&lens(), WIDTH), &how);
     }
     assert!(known[0].is_sure(&how));
     let met = known[0].met(&now, &Lane { left: 0.3, right: -0.3 }).unwrap();
     assert!((met - 3.0).abs() < 0.05, "{met}");
     let frames = (how.doubt / 0.05).ceil() as usize;
-    let unseen = |before: &[Known], moves| remember(before, &[], &now, (0.05, moves), (&lens(), WIDTH), &how);
+    let unseen =
+        |before: &[Known], moves| remember(before, (&[], &[]), &now, (0.05, moves), (&lens(), WIDTH), &how);
     let mut standing = known.clone();
     for _ in 0..=frames {
         known = unseen(&known, true);
@@ -173,4 +176,31 @@ fn a_known_obstacle_in_full_view_that_is_not_seen_is_forgotten() {
     }
     assert!(known.is_empty());
     assert_eq!(standing.len(), 1, "who stands measures nothing");
+}
+
+#[test]
+fn an_obstacle_reaches_as_far_as_it_was_seen_to_of_late() {
+    let how = Remembering::default();
+    let now = moment(0.0);
+    let whole = obstacle(&now, [[3.0, 0.4], [3.0, -0.5]], 0.01);
+    let known = remember(&[], (&[whole], &[]), &now, (0.05, true), (&lens(), WIDTH), &how);
+    let part = [Obstacle { left_id: 7, ..obstacle(&now, [[3.0, -0.1], [3.0, -0.5]], 0.01) }];
+    let left = |known: &[Known]| relative(known[0].left, now.place, now.course)[1];
+    // Its left part is not seen for two frames: it is still there.
+    let mut later = known.clone();
+    for k in 1..=2 {
+        let m = moment(0.05 * f64::from(k));
+        later = remember(&later, (&part, &[]), &m, (0.05, true), (&lens(), WIDTH), &how);
+        assert_eq!(later.len(), 1);
+        assert!((left(&later) - 0.4).abs() < 0.05, "{}", left(&later));
+    }
+    // After longer it is not, ...
+    let m = moment(0.05);
+    let long_ago = [Known { reached: [-how.extent; 2], ..known[0] }];
+    let late = remember(&long_ago, (&part, &[]), &m, (0.05, true), (&lens(), WIDTH), &how);
+    assert!((left(&late) + 0.1).abs() < 0.05, "{}", left(&late));
+    // ... nor where something far behind is seen in that direction.
+    let behind = Landmark { id: 9, place: [8.0, 0.5], sigma: 0.1, missed: 0.0 };
+    let open = remember(&known, (&part, &[behind]), &m, (0.05, true), (&lens(), WIDTH), &how);
+    assert!((left(&open) + 0.1).abs() < 0.05, "{}", left(&open));
 }
