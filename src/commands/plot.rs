@@ -6,6 +6,7 @@ use crate::{
     files, image_files, output,
     plot::{self, Drawing, Gantt, SelectError, Selection, Sequence, Sheet},
     report::Refusal,
+    services::Overlay,
     trace_file::Reader,
 };
 use clap::{Args, ValueEnum, ValueHint};
@@ -36,6 +37,11 @@ pub struct Arguments {
     /// Draw at most so many rows of messages, lanes of units [default: 400] or images [default: 24]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     limit: Option<u32>,
+    /// Draw into images what is seen in them: upright edges, the pairs that are obstacles (left blue, right red, thick the
+    /// first) and the optical centre; the flow on the first obstacle, eightfold, and its focus of expansion. It is looked for
+    /// again in all images up to the last one shown, with `look`'s defaults and the readings of inertial unit and odometry
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT")]
+    overlay: Vec<Layer>,
     /// The picture: .svg, .png, for messages also .mmd [default: two of them, beside the trace]
     #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     output: Vec<String>,
@@ -53,6 +59,15 @@ enum Kind {
     Gantt,
     /// The contact sheet: what cameras saw
     Frames,
+}
+
+/// What is drawn into images.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Layer {
+    /// Upright edges, pairs, optical centre
+    Edges,
+    /// Flow and its focus
+    Flow,
 }
 
 /// The form of a picture, by the ending of its file.
@@ -114,9 +129,11 @@ impl Arguments {
             ("--from", self.from.is_some() && top),
             ("--to", self.to.is_some() && top),
             ("--limit", self.limit.is_some() && top),
+            ("--overlay", !self.overlay.is_empty() && !frames),
         ];
         if let Some((option, _)) = wrong.into_iter().find(|(_, wrong)| *wrong) {
             let (seen, hint) = match self.kind {
+                _ if option == "--overlay" => ("it is drawn into images", "choose `--kind frames`"),
                 Kind::Top => {
                     ("the top view shows the whole run", "choose `--kind sequence` or `--kind gantt`")
                 }
@@ -124,6 +141,15 @@ impl Arguments {
                 _ => ("a schedule has no messages", "choose `--kind sequence`"),
             };
             return Err(Refusal::about(option, "S9024", "the option does not go with this kind", seen, hint));
+        }
+        if !self.overlay.is_empty() && !cfg!(feature = "vision") {
+            return Err(Refusal::about(
+                "--overlay",
+                "S9029",
+                "nothing can be seen in images by this program",
+                "what is drawn is found by vision; the program was built without it",
+                "build it with the feature `vision`, which needs OpenCV: `cargo build --release`",
+            ));
         }
         match (self.from, self.to) {
             (Some(from), Some(to)) if from >= to => Err(Refusal::about(
@@ -191,7 +217,7 @@ impl Arguments {
             Kind::Frames => {
                 // Images of a world that has changed since would be none of the run.
                 image_files::again(&reader.header().scene.images)?;
-                let sheet = Sheet::read(reader, &selection, limit).map_err(unreadable)?;
+                let sheet = Sheet::read(reader, &selection, limit, self.layers()).map_err(unreadable)?;
                 let rest = sheet.rest();
                 (Picture::Sheet(sheet), rest)
             }
@@ -200,6 +226,11 @@ impl Arguments {
                 (Picture::Drawing(gantt.drawing()), gantt.rest())
             }
         })
+    }
+
+    fn layers(&self) -> Overlay {
+        let has = |layer| self.overlay.contains(&layer);
+        Overlay { edges: has(Layer::Edges), flow: has(Layer::Flow) }
     }
 
     /// The part of the trace that is asked for. Names are looked up in the whole trace before it is drawn.

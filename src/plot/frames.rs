@@ -1,15 +1,19 @@
-//! The contact sheet: what cameras saw, one image beside the other.
+//! The contact sheet: what cameras saw, one image beside the other, on request with what is seen in them.
 
-use super::{PngError, Selection};
+use super::{PngError, Selection, latest::Latest};
 use crate::{
     recording::Everywhere,
+    services::{Onlooker, Overlay, Readings},
     trace_file::{Reader, TraceError},
 };
 use soifra_runtime::{
     Event, Time,
     objects::{Cameras, Frame},
 };
-use std::io::{Read, Seek};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    io::{Read, Seek},
+};
 use tiny_skia::{Color, IntSize, Pixmap, PixmapPaint, Transform};
 
 /// Images a row.
@@ -32,34 +36,72 @@ struct Taken {
     sensor: u32,
     captured: Time,
     view: Vec<f64>,
+    /// What had been read when it came.
+    readings: Readings,
+}
+
+impl Taken {
+    fn camera(&self) -> (u32, u32) {
+        (self.robot, self.sensor)
+    }
 }
 
 impl Sheet {
-    /// Takes so many images of a trace again.
+    /// Takes so many images of a trace again. For an overlay the images between them, and those before, are looked at too: what is seen
+    /// in an image depends on what was seen in those before.
     pub fn read<R: Read + Seek>(
         mut reader: Reader<R>,
         selection: &Selection,
         limit: usize,
+        overlay: Overlay,
     ) -> Result<Sheet, TraceError> {
+        let mut read = Latest::new(reader.header());
         let mut taken = Vec::new();
         for record in reader.by_ref() {
             let record = record?;
-            if let Event::Image { robot, sensor, captured, view, .. } = record.event
-                && selection.from.is_none_or(|t| t <= captured)
-                && selection.to.is_none_or(|t| captured <= t)
-            {
-                taken.push(Taken { robot, sensor, captured, view });
+            match record.event {
+                Event::Image { robot, sensor, captured, view, .. } => {
+                    let readings = read.of(robot);
+                    taken.push(Taken { robot, sensor, captured, view, readings });
+                }
+                Event::Reading { robot, sensor, registers, .. } if overlay.any() => {
+                    read.note((robot, sensor), &registers);
+                }
+                _ => {}
             }
         }
-        let all = taken.len();
-        let some = limit.min(all);
-        let chosen = (0..some).filter_map(|i| taken.get(i * all / some.max(1)));
-        let mut cameras = Everywhere::default().of(&reader.header().scene);
-        let frame = |t: &Taken| {
-            let image = cameras.as_mut()?.retake(t.robot, t.sensor, t.captured, &t.view)?;
-            Some(Frame::clone(&image))
+        let within = |t: &Taken| {
+            selection.from.is_none_or(|s| s <= t.captured) && selection.to.is_none_or(|s| t.captured <= s)
         };
-        Ok(Sheet { frames: chosen.filter_map(frame).collect(), all })
+        let wanted: Vec<usize> =
+            taken.iter().enumerate().filter(|(_, t)| within(t)).map(|(i, _)| i).collect();
+        let all = wanted.len();
+        let some = limit.min(all);
+        let chosen: BTreeSet<usize> =
+            (0..some).filter_map(|i| wanted.get(i * all / some.max(1)).copied()).collect();
+        let shown: BTreeSet<_> = chosen.iter().filter_map(|i| taken.get(*i)).map(Taken::camera).collect();
+        let last = chosen.last().copied();
+        let mut cameras = Everywhere::default().of(&reader.header().scene);
+        let mut onlookers: BTreeMap<(u32, u32), Onlooker> = BTreeMap::new();
+        let mut frames = Vec::new();
+        for (i, t) in taken.iter().enumerate().take_while(|(i, _)| Some(*i) <= last) {
+            let show = chosen.contains(&i);
+            if !(show || overlay.any() && shown.contains(&t.camera())) {
+                continue;
+            }
+            let image = cameras.as_mut().and_then(|c| c.retake(t.robot, t.sensor, t.captured, &t.view));
+            let Some(image) = image else { continue };
+            let onlooker = onlookers.entry(t.camera()).or_default();
+            if overlay.any() {
+                onlooker.look(&image, &t.readings);
+            }
+            if show {
+                let mut frame = Frame::clone(&image);
+                onlooker.draw(&mut frame, overlay);
+                frames.push(frame);
+            }
+        }
+        Ok(Sheet { frames, all })
     }
 
     /// What is said of those that are not shown, and when the others were taken.

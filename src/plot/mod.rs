@@ -5,6 +5,7 @@ mod drawing;
 mod font;
 mod frames;
 mod gantt;
+mod latest;
 mod page;
 mod png;
 mod selection;

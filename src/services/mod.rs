@@ -1,12 +1,46 @@
 //! What missions call services for: functions that the runtime's machine does not compute itself.
 
+#[cfg(not(feature = "vision"))]
+mod blind;
 mod mapping;
 #[cfg(feature = "vision")]
 mod vision;
 
+#[cfg(not(feature = "vision"))]
+pub use blind::Onlooker;
+#[cfg(feature = "vision")]
+pub use vision::Onlooker;
+
 use soifra_graph::{Diagnostic, Expr, Function, Graph, Op, eval::FaultKind};
 use soifra_lang::check::walk;
 use soifra_runtime::objects::{Frame, Services, Shelf};
+
+/// What of that which is seen is drawn into an image.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Overlay {
+    /// Upright edges, the pairs that are obstacles, the optical centre.
+    pub edges: bool,
+    /// The flow of points on the first obstacle, and its focus of expansion.
+    pub flow: bool,
+}
+
+impl Overlay {
+    /// Whether anything is drawn.
+    pub fn any(self) -> bool {
+        self.edges || self.flow
+    }
+}
+
+/// What is known beside an image, as registers of the latest readings.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Readings {
+    /// Of an inertial unit.
+    pub imu: Option<[f64; 6]>,
+    /// Of odometry.
+    pub odometry: Option<[f64; 14]>,
+    /// Half the width of the body, m.
+    pub half_width: f64,
+}
 
 /// All services of this program.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,6 +1,6 @@
 //! Looking at an image: from the registers of a call to what is seen.
 
-use super::sight::Sight;
+use super::{super::Readings, sight::Sight};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use soifra_graph::eval::FaultKind;
 use soifra_runtime::objects::{Frame, Optics, Shelf};
@@ -118,6 +118,23 @@ pub fn look(args: &[f64], shelf: &dyn Shelf) -> Result<Result<Sight, Why>, Fault
     let helper = if shelf.threads() > 1 { HELPER.as_ref() } else { None };
     let body = Body { half_width, margin };
     Ok(see(frame, before, &Asked { imu, odometry, body, thresholds, window, helper }))
+}
+
+/// How far back edges are remembered unless a call says otherwise, s.
+const WINDOW: f64 = 2.5;
+
+/// Looks at an image outside of a run, with what `look` takes where a call leaves it out.
+pub(super) fn look_on(frame: &Frame, before: Option<&Sight>, known: &Readings) -> Result<Sight, Why> {
+    alone();
+    let asked = Asked {
+        imu: known.imu.map(Tilted::of),
+        odometry: known.odometry.map(Reckoned::of),
+        body: Body { half_width: known.half_width, margin: 0.0 },
+        thresholds: Thresholds::Automatic,
+        window: WINDOW,
+        helper: HELPER.as_ref(),
+    };
+    see(frame, before, &asked)
 }
 
 /// Registers that are taken from the front.

@@ -1,10 +1,12 @@
 //! The vision services: what a mission sees, out of images.
 
 mod eye;
+mod onlooker;
 mod people;
 mod published;
 mod sight;
 
+pub use onlooker::Onlooker;
 use sight::Sight;
 use soifra_graph::{Function, eval::FaultKind, reason};
 use soifra_runtime::objects::Shelf;
