@@ -2,6 +2,8 @@
 
 mod exposure;
 mod image_files;
+#[cfg(feature = "vision")]
+mod overlay;
 
 use crate::support::{code, file, folder, soifra, stderr};
 
