@@ -39,6 +39,10 @@ pub struct Readings {
     /// Of odometry.
     pub odometry: Option<[f64; 14]>,
     /// Half the width of the body, m.
+    #[cfg_attr(
+        not(feature = "vision"),
+        allow(dead_code, reason = "nobody looks without vision; 2026-11-24")
+    )]
     pub half_width: f64,
 }
 

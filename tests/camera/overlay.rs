@@ -100,7 +100,7 @@ fn edges_are_drawn_where_they_are() {
     };
     let of = |overlay: &[&str], which: fn(&[u8]) -> bool| -> Vec<f64> {
         let picture = plot(overlay);
-        let width = picture.width as usize;
+        let width = picture.width;
         let pixels = picture.data.chunks_exact(3).enumerate().filter(|(_, p)| which(p));
         pixels.map(|(i, _)| (i % width) as f64 + 0.5).collect()
     };
