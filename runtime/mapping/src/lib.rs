@@ -21,6 +21,7 @@
 
 pub mod field;
 pub mod grid;
+pub mod hits;
 pub mod matching;
 pub mod observe;
 pub mod overlap;
@@ -36,6 +37,7 @@ pub mod why;
 
 pub use field::Field;
 pub use grid::{Grid, Layout};
+pub use hits::Hits;
 pub use path::Path;
 pub use place::Place;
 pub use scan::Beam;

@@ -8,6 +8,35 @@ use crate::{
     why::{Why, finite},
 };
 
+/// What a scan can be fitted to.
+pub trait Likely {
+    /// How likely a beam ends at a point in `map`, m: about 1 on a face, 0 far from any.
+    fn likely(&self, at: [f64; 2]) -> f64;
+}
+
+/// The distances of a grid as something to be fitted to.
+#[derive(Clone, Copy, Debug)]
+pub struct Near<'a> {
+    /// The distances.
+    pub field: &'a Field,
+    /// Deviation of the end of a beam from what it met, m.
+    pub blur: f64,
+}
+
+impl<'a> Near<'a> {
+    /// With a blur that suits a scanner.
+    pub fn new(field: &'a Field) -> Near<'a> {
+        Near { field, blur: 0.06 }
+    }
+}
+
+impl Likely for Near<'_> {
+    fn likely(&self, at: [f64; 2]) -> f64 {
+        let d = self.field.between(at);
+        libm::exp(-0.5 * d * d / (self.blur * self.blur).max(1e-9))
+    }
+}
+
 /// How it is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Matching {
@@ -19,8 +48,6 @@ pub struct Matching {
     pub beams: usize,
     /// m.
     pub reach: f64,
-    /// Deviation of the end of a beam from what it met, m.
-    pub blur: f64,
     /// What the edge of the window costs, as a share of beams: where several poses fit, as in a passage, the guess counts.
     pub doubt: f64,
     /// At least such a share of beams must fit.
@@ -34,18 +61,17 @@ impl Default for Matching {
             step: [0.01, 0.0022],
             beams: 150,
             reach: 20.0,
-            blur: 0.06,
             doubt: 0.02,
             least: 0.3,
         }
     }
 }
 
-/// The pose near a guess at which a scan fits best; `field` is that of what has been seen so far.
+/// The pose near a guess at which a scan fits best; `map` is what has been seen so far.
 ///
 /// # Errors
 /// [`Why::BadNumber`], [`Why::NothingInRange`], [`Why::NoMatch`].
-pub fn match_scan(field: &Field, scan: &[Beam], guess: Place, how: &Matching) -> Result<Place, Why> {
+pub fn match_scan(map: &impl Likely, scan: &[Beam], guess: Place, how: &Matching) -> Result<Place, Why> {
     finite(&[guess.at[0], guess.at[1], guess.yaw, how.window[0], how.window[1]])?;
     if how.window.iter().chain(&how.step).any(|x| !(*x > 0.0)) {
         return Err(Why::BadNumber);
@@ -54,7 +80,7 @@ pub fn match_scan(field: &Field, scan: &[Beam], guess: Place, how: &Matching) ->
     if ends.is_empty() {
         return Err(Why::NothingInRange);
     }
-    let search = Search { field, ends, guess, how };
+    let search = Search { map, ends, guess, how };
     let [n, m] = how.step;
     let rough = search.best([0.0; 3], how.window, [4.0 * n, 4.0 * m]);
     let fine = search.best(rough, [4.0 * n, 4.0 * m], [n, m]);
@@ -64,15 +90,15 @@ pub fn match_scan(field: &Field, scan: &[Beam], guess: Place, how: &Matching) ->
     if search.fit(&search.turned(turn), [x, y]) < how.least { Err(Why::NoMatch) } else { Ok(place) }
 }
 
-struct Search<'a> {
-    field: &'a Field,
+struct Search<'a, M> {
+    map: &'a M,
     /// What beams met, as the body sees it.
     ends: Vec<[f64; 2]>,
     guess: Place,
     how: &'a Matching,
 }
 
-impl Search<'_> {
+impl<M: Likely> Search<'_, M> {
     /// What beams met, in `map`, from the guess turned by so much.
     fn turned(&self, by: f64) -> Vec<[f64; 2]> {
         let (s, c) = libm::sincos(self.guess.yaw + by);
@@ -82,12 +108,7 @@ impl Search<'_> {
 
     /// The share of beams that fit, shifted by so much.
     fn fit(&self, ends: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
-        let narrow = 0.5 / (self.how.blur * self.how.blur).max(1e-9);
-        let one = |[a, b]: &[f64; 2]| {
-            let d = self.field.between([a + x, b + y]);
-            libm::exp(-narrow * d * d)
-        };
-        ends.iter().map(one).sum::<f64>() / ends.len().max(1) as f64
+        ends.iter().map(|[a, b]| self.map.likely([a + x, b + y])).sum::<f64>() / ends.len().max(1) as f64
     }
 
     /// The best of a window about an offset from the guess; of equals the one that is tried first, the middle before all.

@@ -2,7 +2,7 @@
 
 use soifra_mapping::{
     Beam, Field, Grid, Layout, Path, Place, Why,
-    matching::{Matching, match_scan},
+    matching::{Matching, Near, match_scan},
     observe::observe,
     particles::{Localising, Particles, localise},
     place::{apart, wrap},
@@ -149,7 +149,10 @@ fn scans_that_say_nothing_are_refused() {
     assert_eq!(none, Err(Why::NothingInRange));
     let bad = localise(None, Place::new(f64::NAN, 0.0, 0.0), place, &nothing, &field, 0.5, &how);
     assert_eq!(bad.map(|p| p.estimate), Err(Why::BadNumber));
-    assert_eq!(match_scan(&field, &nothing, place, &Matching::default()), Err(Why::NothingInRange));
+    assert_eq!(
+        match_scan(&Near::new(&field), &nothing, place, &Matching::default()),
+        Err(Why::NothingInRange)
+    );
 }
 
 #[test]
@@ -162,10 +165,11 @@ fn a_scan_fits_where_it_was_taken() {
     let field = Field::of(&grid);
     let there = Place::new(2.3, 3.1, 0.35);
     let guess = Place::new(2.22, 3.17, 0.39);
-    let found = match_scan(&field, &scan(there, &shapes()), guess, &Matching::default()).expect("a pose");
+    let found =
+        match_scan(&Near::new(&field), &scan(there, &shapes()), guess, &Matching::default()).expect("a pose");
     // Faces lie on edges of cells here: a grid of 5 cm can be off by half a cell along each axis.
     assert!(apart(found.at, there.at) < 0.036 && (found.yaw - there.yaw).abs() < 0.01, "{found:?}");
     let elsewhere = Field::of(&Grid::unknown(layout()));
-    let refused = match_scan(&elsewhere, &scan(there, &shapes()), guess, &Matching::default());
+    let refused = match_scan(&Near::new(&elsewhere), &scan(there, &shapes()), guess, &Matching::default());
     assert_eq!(refused, Err(Why::NoMatch));
 }

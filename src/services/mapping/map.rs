@@ -1,9 +1,18 @@
 //! A map as an object: its grid, and the distances in it once somebody has asked for them.
 
 use soifra_graph::Value;
-use soifra_mapping::{Field, Grid, Layout, Why, shape::Shape};
+use soifra_mapping::{
+    Beam, Field, Grid, Hits, Layout, Place, Why,
+    hits::Blurred,
+    matching::{Matching, Near, match_scan},
+    observe::observe,
+    shape::Shape,
+};
 use soifra_runtime::{objects::Object, scene::Part};
 use std::{any::Any, sync::OnceLock};
+
+/// Deviation of the end of a beam from what it met, m, and of the pose from which it was sent.
+const BLUR: f64 = 0.02;
 
 /// A map.
 #[derive(Debug)]
@@ -11,6 +20,9 @@ pub struct Map {
     /// What is where.
     pub grid: Grid,
     field: OnceLock<Field>,
+    /// Where beams have ended, on a map that is made from nothing.
+    hits: Option<Hits>,
+    blurred: OnceLock<Blurred>,
 }
 
 impl Object for Map {
@@ -22,12 +34,13 @@ impl Object for Map {
 impl Map {
     /// Of a grid.
     pub fn new(grid: Grid) -> Map {
-        Map { grid, field: OnceLock::new() }
+        Map { grid, field: OnceLock::new(), hits: None, blurred: OnceLock::new() }
     }
 
     /// Of which nothing is known.
     pub fn empty(low: [f64; 2], high: [f64; 2], resolution: f64) -> Result<Map, Why> {
-        Ok(Map::new(Grid::unknown(Layout::covering(low, high, resolution)?)))
+        let layout = Layout::covering(low, high, resolution)?;
+        Ok(Map { hits: Some(Hits::none(layout)), ..Map::new(Grid::unknown(layout)) })
     }
 
     /// Of walls and obstacles, over the bounds.
@@ -38,6 +51,20 @@ impl Map {
         let layout = Layout::covering(low, high, resolution)?;
         let shapes: Vec<Shape> = parts.iter().filter_map(|p| shape(p)).collect();
         Ok(Map::new(Grid::known(layout, &shapes)))
+    }
+
+    /// With a scan from a pose, as far as `reach`, m.
+    pub fn with(&self, at: Place, scan: &[Beam], reach: f64) -> Map {
+        let hits = self.hits.as_ref().map(|h| h.with(at, scan, reach));
+        Map { hits, ..Map::new(observe(&self.grid, at, scan, reach)) }
+    }
+
+    /// Where a scan fits best: to where beams have ended, or, on a map that was known, to what is occupied.
+    pub fn fit(&self, scan: &[Beam], guess: Place, how: &Matching) -> Result<Place, Why> {
+        match &self.hits {
+            Some(hits) => match_scan(self.blurred.get_or_init(|| hits.blurred(BLUR)), scan, guess, how),
+            None => match_scan(&Near::new(self.field()), scan, guess, how),
+        }
     }
 
     /// How far from each cell the nearest occupied one is.

@@ -8,8 +8,7 @@ use registers::{Registers, Slots};
 use soifra_graph::{Function, eval::FaultKind};
 use soifra_mapping::{
     Path, Place, Why,
-    matching::{self, Matching},
-    observe::observe,
+    matching::Matching,
     overlap::overlap,
     particles::{self, Localising, Particles},
     route::{self, Room},
@@ -80,8 +79,8 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
             let grid = args.object(shelf)?;
             let at = args.place()?;
             let [reach] = args.take_last()?;
-            let seen = observe(&of::<Map>(&grid)?.grid, at, &args.scan()?, reach);
-            out.value([shelf.put(Arc::new(Map::new(seen)))])
+            let seen = of::<Map>(&grid)?.with(at, &args.scan()?, reach);
+            out.value([shelf.put(Arc::new(seen))])
         }
         Function::Localise => {
             let made = localise(args, shelf)?;
@@ -103,7 +102,7 @@ pub fn call(which: Function, args: &[f64], shelf: &mut dyn Shelf, out: &mut [f64
             let guess = args.place()?;
             let [window, turn] = args.take_last()?;
             let how = Matching { window: [window, turn], ..Matching::default() };
-            let found = matching::match_scan(of::<Map>(&grid)?.field(), &args.scan()?, guess, &how);
+            let found = of::<Map>(&grid)?.fit(&args.scan()?, guess, &how);
             out.optional(found.map(pose))
         }
         Function::PlanPath => {

@@ -7,7 +7,7 @@ use soifra_vision::{
     ImageView, Lens, Why,
     attitude::Attitude,
     ground::Ground,
-    people::{People, SURE, Standpoint, people},
+    people::{People, Standpoint, people},
     person::Searching,
 };
 use std::any::Any;
@@ -71,7 +71,7 @@ impl Crowd {
         let (count, items) = out.split_first_mut().ok_or(FaultKind::Malformed)?;
         items.fill(0.0);
         let People { time, tracks, .. } = &self.people;
-        let sure = tracks.iter().filter(|t| t.shapes >= SURE && time - t.seen <= LATELY);
+        let sure = tracks.iter().filter(|t| t.is_sure() && time - t.seen <= LATELY);
         let mut n = 0;
         for (slot, t) in items.as_chunks_mut::<9>().0.iter_mut().zip(sure) {
             let ([x, y], [u, v]) = (t.place, t.velocity);
